@@ -1,0 +1,60 @@
+// The exact referee: brute force over all triangles with exact signs, independent of the library's arithmetic.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gnomon.h"
+#include "scene/scene.hpp"
+
+namespace harness {
+
+/// What one triangle is to one ray.
+struct Candidate {
+    std::uint32_t geometry_id, primitive_id;
+    bool exact_hit;    // the closed triangle and the line meet in one point: the exact signs say so
+    bool in_band;      // an edge passes the ray within the band of accuracy.md: a decision in f32 may go either way
+    float t;           // the exact t (a rational), rounded once to the nearest float; meaningful for exact hits
+    double t_exact;    // the same rational, rounded to double
+};
+
+/// What an engine did on one ray, against the truth. All raw judgements use the exact t rounded once, against a closed [t_min, t_max].
+struct Verdict {
+    bool missed = false;            // there is an exact hit, the engine reported none
+    bool false_hit = false;         // the engine reported a triangle that the ray does not hit exactly, or not within the interval
+    bool wrong_primitive = false;   // it reported a true hit, but not the closest
+    bool tie = false;               // it reported another triangle than the oracle's first, at the same t once rounded: not wrong
+    bool outside_contract = false;  // beyond what accuracy.md promises for ACCURATE: see judge()
+    double t_ulps = -1;             // |t - exact t of the reported triangle| in ulps of the exact t's float; -1 where there is no true hit to compare
+    double uv_error = -1;           // max(|u - exact|, |v - exact|) in units of 2^-24; -1 likewise
+};
+
+/// What the contract promises, by precision: `exact` turns the band off.
+enum class Contract { none, banded, exact };
+
+class Oracle {
+public:
+    explicit Oracle(const Scene& scene);
+    ~Oracle();
+    Oracle(const Oracle&) = delete;
+    Oracle& operator=(const Oracle&) = delete;
+
+    /// All triangles that the ray hits or could be taken to hit in f32, sorted by (t, geometry_id, primitive_id). Ignores the interval.
+    std::vector<Candidate> candidates(const GnomonRay& ray) const;
+
+    /// Exact hits with the rounded t in [t_min, t_max]; the closest first; empty for a miss or an invalid ray.
+    std::vector<Candidate> hits(const GnomonRay& ray) const;
+
+    /// Judges a closest-hit answer.
+    Verdict judge(const GnomonRay& ray, const GnomonHit& answer, Contract contract) const;
+
+    /// Judges an any-hit answer: missed, false_hit and outside_contract are filled.
+    Verdict judge_occluded(const GnomonRay& ray, bool answer, Contract contract) const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace harness
