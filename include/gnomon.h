@@ -1,79 +1,394 @@
-/* temporary: replaced by the generated header; same names and layouts */
+// gnomon: ray queries against a scene of triangles, with the same answer from every structure.
+//
+// Conventions
+//   Coordinates are floats in any one unit and handedness. A ray is origin + t * direction for t in the closed
+//   interval [t_min, t_max]; t counts in lengths of the direction. A triangle is closed, and both its sides are hit.
+//   Of two hits with the same t the one with the lower (geometry_id, primitive_id) wins, in every structure and call.
+//   A triangle of zero area is valid and never hit.
+//
+// A scene in five calls
+//   GnomonSceneBuilder *builder = gnomon_scene_builder_new();
+//   gnomon_scene_builder_add_triangles(builder, &triangles, &geometry_id);
+//   gnomon_scene_build(builder, NULL, &scene);
+//   gnomon_scene_builder_free(builder);
+//   if (gnomon_intersect(scene, &ray, &hit)) ...
+//
+// Errors
+//   Functions that can fail return a GnomonStatus; gnomon_last_error() gives the calling thread's last failure as one
+//   sentence. Outputs are written only on success. Numbers for structures, precisions and the like enter as uint32_t: an unknown
+//   one is GNOMON_ERROR_INVALID_ARGUMENT. No panic and no exception of the library's own leaves it.
+//
+// Threads
+//   A builder belongs to one thread at a time. A scene is immutable: any number of threads may query it.
+//
+// Accuracy (u = 2^-24)
+//   No ray slips through a shared edge or vertex of a mesh, in any precision.
+//   FAST and ACCURATE decide in float: where a ray passes an edge at less than the rounding of its coordinates, a few u of the
+//   distance, they may take the neighbour across it. ACCURATE gives t within 0.51 ulp, and u and v within 0.52 u, of
+//   the exact values. Answers are right for coordinates up to 1e38 in magnitude, with gradual underflow switched on (the
+//   default of every CPU; some hosts set FTZ or DAZ). The library never changes the floating-point environment.
+
 #ifndef GNOMON_H
 #define GNOMON_H
+
+// Generated from src/ffi by cbindgen: `cargo test --test header` compares it, UPDATE_HEADER=1 renews it.
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-typedef uint32_t GnomonStatus;
-#define GNOMON_OK 0u
-#define GNOMON_ERROR_INVALID_ARGUMENT 1u
-#define GNOMON_ERROR_OUT_OF_MEMORY 2u
-#define GNOMON_ERROR_CANCELLED 3u
-#define GNOMON_ERROR_UNSUPPORTED 4u
-#define GNOMON_ERROR_INTERNAL 5u
-#define GNOMON_INVALID_ID 0xFFFFFFFFu
+
+// The id of what is not there: a miss's geometry and primitive, the instance where none is involved.
+#define GNOMON_INVALID_ID 4294967295u
+
+// `indices` are `uint16_t`.
 #define GNOMON_INDEX_U16 1u
+
+// `indices` are `uint32_t`.
 #define GNOMON_INDEX_U32 2u
+
+// All went well.
+#define GNOMON_OK 0u
+
+// An argument can't be used: a null pointer, an unknown number, an index out of range, a coordinate that is not
+// finite. The caller can mend it.
+#define GNOMON_ERROR_INVALID_ARGUMENT 1u
+
+// Memory ran out, or `memory_limit_bytes` would have been passed. Nothing was changed.
+#define GNOMON_ERROR_OUT_OF_MEMORY 2u
+
+// The progress callback asked for an end.
+#define GNOMON_ERROR_CANCELLED 3u
+
+// This version has no such structure, quality or precision yet.
+#define GNOMON_ERROR_UNSUPPORTED 4u
+
+// A bug in gnomon, or a machine that could not start threads. Nothing was changed.
+#define GNOMON_ERROR_INTERNAL 5u
+
+// The best there is for the scene: brute force for a handful of triangles, else the binary BVH.
 #define GNOMON_STRUCTURE_AUTO 0u
+
+// Every triangle is asked: for a handful, and as a reference.
 #define GNOMON_STRUCTURE_BRUTE_FORCE 1u
+
+// Uniform grid. Not built yet.
 #define GNOMON_STRUCTURE_GRID 2u
+
+// Octree. Not built yet.
 #define GNOMON_STRUCTURE_OCTREE 3u
+
+// kd-tree. Not built yet.
 #define GNOMON_STRUCTURE_KD_TREE 4u
+
+// BSP tree. Not built yet.
 #define GNOMON_STRUCTURE_BSP_TREE 5u
+
+// Binary bounding volume hierarchy.
 #define GNOMON_STRUCTURE_BVH 6u
+
+// Bounding volume hierarchy with 8 children a node. Not built yet.
 #define GNOMON_STRUCTURE_WIDE_BVH 7u
+
+// Fastest build. BVH: split at the median of the longest axis.
 #define GNOMON_QUALITY_LOW 0u
+
+// Good for both. BVH: binned surface area heuristic (Wald 2007).
 #define GNOMON_QUALITY_MEDIUM 1u
+
+// Best queries. Not built yet.
 #define GNOMON_QUALITY_HIGH 2u
+
+// Decided in float, watertight; t, u and v come from what decided. For previews.
 #define GNOMON_PRECISION_FAST 0u
+
+// Decided as FAST; t within 0.51 ulp, u and v within 0.52 * 2^-24 of the exact values. For rendering; the default.
 #define GNOMON_PRECISION_ACCURATE 1u
+
+// Decided exactly: right for every ray. Not built yet.
 #define GNOMON_PRECISION_EXACT 2u
+
+// The best instruction set that the CPU has.
 #define GNOMON_ISA_AUTO 0u
+
+// No vector instructions beyond the compiler's baseline.
 #define GNOMON_ISA_SCALAR 1u
+
+// At most SSE4.2.
 #define GNOMON_ISA_SSE42 2u
+
+// At most AVX2 and FMA.
 #define GNOMON_ISA_AVX2 3u
+
+// At most AVX-512 F, VL, DQ and BW.
 #define GNOMON_ISA_AVX512 4u
+
+// A triangle with a coordinate that is not finite fails the build, which names the first one. The default.
 #define GNOMON_INVALID_REJECT 0u
+
+// Such a triangle is left out and counted in the stats; the others keep their ids.
 #define GNOMON_INVALID_SKIP 1u
-typedef struct GnomonRay { float origin[3]; float t_min; float direction[3]; float t_max; } GnomonRay;
-typedef struct GnomonHit { float t; float u, v; float normal[3]; uint32_t primitive_id, geometry_id, instance_id; } GnomonHit;
-typedef struct GnomonTriangles {
-  const float *positions; size_t position_stride; size_t vertex_count;
-  const void *indices; uint32_t index_format; size_t index_stride; size_t triangle_count;
-} GnomonTriangles;
-typedef struct GnomonSceneBuilder GnomonSceneBuilder;
+
+// An immutable scene; any number of threads may query it at a time.
 typedef struct GnomonScene GnomonScene;
+
+// Collects meshes; belongs to one thread at a time.
+typedef struct GnomonSceneBuilder GnomonSceneBuilder;
+
+// Told the share of a build that is done, in [0, 1] and never falling, and `progress_user`. Returning false cancels the build.
+//
+// Called on the thread that called `gnomon_scene_build`, at 0, about every 10 ms, and at 1. It may throw a C++ exception: the
+// build is cancelled, and the exception passes through `gnomon_scene_build`.
+typedef bool (*GnomonProgress)(void *user, double done);
+
+// How to build a scene. Fill it with `gnomon_build_options_init`, then change what you like.
 typedef struct GnomonBuildOptions {
-  uint32_t struct_size; uint32_t structure, quality, precision, isa, thread_count, invalid_triangles;
-  uint64_t memory_limit_bytes; bool (*progress)(void *user, double done); void *progress_user;
+    // `sizeof(GnomonBuildOptions)`, so that a program compiled against an older header keeps working.
+    uint32_t struct_size;
+    // `GNOMON_STRUCTURE_*`; by default `_AUTO`.
+    uint32_t structure;
+    // `GNOMON_QUALITY_*`; by default `_MEDIUM`.
+    uint32_t quality;
+    // `GNOMON_PRECISION_*`; by default `_ACCURATE`.
+    uint32_t precision;
+    // `GNOMON_ISA_*`, the most that queries may use, so that one machine can test every path; by default `_AUTO`. The answers do not depend on it.
+    uint32_t isa;
+    // Threads of the build; 0, the default: as many as the machine has. The scene does not depend on it.
+    uint32_t thread_count;
+    // `GNOMON_INVALID_*`; by default `_REJECT`.
+    uint32_t invalid_triangles;
+    // What the build may hold at a time, the builder's copy of the meshes not counted; a build that would pass it fails with
+    // `GNOMON_ERROR_OUT_OF_MEMORY` before it allocates. 0, the default: no limit.
+    uint64_t memory_limit_bytes;
+    // NULL, the default: nobody is told.
+    GnomonProgress progress;
+    // Passed on to `progress`.
+    void *progress_user;
 } GnomonBuildOptions;
-typedef struct GnomonQueryOptions { uint32_t struct_size; uint32_t thread_count; } GnomonQueryOptions;
+
+// How to answer a batch. Fill it with `gnomon_query_options_init`, then change what you like.
+typedef struct GnomonQueryOptions {
+    // `sizeof(GnomonQueryOptions)`, so that a program compiled against an older header keeps working.
+    uint32_t struct_size;
+    // The most threads to use; 0, the default: as many as the machine has; 1: the calling thread alone.
+    uint32_t thread_count;
+} GnomonQueryOptions;
+
+// How a call ended: one of the `GNOMON_OK` and `GNOMON_ERROR_*` numbers. They never change their meaning; a later
+// version may add some.
+typedef uint32_t GnomonStatus;
+
+// A triangle mesh in the caller's memory, which `gnomon_scene_builder_add_triangles` copies.
+//
+// No alignment is asked for, and nothing is read beyond the last byte of the last vertex and of the last index.
+typedef struct GnomonTriangles {
+    // Three floats (x, y, z) at the start of each stride; may be null without vertices.
+    const float *positions;
+    // Bytes from one vertex to the next, at least 12; 0 means 12.
+    size_t position_stride;
+    // How many vertices there are.
+    size_t vertex_count;
+    // Three indices at the start of each stride, each below `vertex_count`. NULL: the vertices are taken three by three.
+    const void *indices;
+    // `GNOMON_INDEX_U16` or `GNOMON_INDEX_U32`; not looked at without `indices`.
+    uint32_t index_format;
+    // Bytes from one triangle to the next, at least three indices; 0 means just three indices.
+    size_t index_stride;
+    // How many triangles there are; their place in the order is their `primitive_id`. May be 0.
+    size_t triangle_count;
+} GnomonTriangles;
+
+// What a scene is made of. Later versions add fields at the end.
 typedef struct GnomonSceneStats {
-  uint64_t triangle_count, node_count, leaf_count, reference_count, skipped_count;
-  uint32_t depth, structure, precision, isa;
-  uint64_t bytes, node_bytes, leaf_bytes, peak_build_bytes; double build_seconds, sah_cost;
+    // Triangles that were added, without the skipped ones.
+    uint64_t triangle_count;
+    // Nodes, leaves among them; 0 for brute force.
+    uint64_t node_count;
+    // Nodes without children.
+    uint64_t leaf_count;
+    // Triangles stored in leaves; those of zero area, which nothing hits, are not stored.
+    uint64_t reference_count;
+    // Triangles left out by `GNOMON_INVALID_SKIP`.
+    uint64_t skipped_count;
+    // Nodes on the longest way from the root to a leaf, both counted; 0 without nodes.
+    uint32_t depth;
+    // The `GNOMON_STRUCTURE_*` that was built.
+    uint32_t structure;
+    // The `GNOMON_PRECISION_*` in use.
+    uint32_t precision;
+    // The `GNOMON_ISA_*` in use.
+    uint32_t isa;
+    // Memory that the scene holds.
+    uint64_t bytes;
+    // Of these, for nodes.
+    uint64_t node_bytes;
+    // Of these, for triangles.
+    uint64_t leaf_bytes;
+    // The most that the build held at a time, the scene among it, the builder's copy of the meshes not.
+    uint64_t peak_build_bytes;
+    // Wall-clock time of the build.
+    double build_seconds;
+    // Expected cost of a random ray that meets the scene's box, in triangle tests (MacDonald and Booth 1990, "Heuristics for ray
+    // tracing using space subdivision"); NaN where it has no meaning.
+    double sah_cost;
 } GnomonSceneStats;
+
+// `origin + t * direction` for `t` in the closed interval `[t_min, t_max]`. 32 bytes.
+//
+// A ray with a NaN, an infinite origin or direction, a zero direction, or `t_min > t_max` misses everything. `t_max` may be
+// `INFINITY`, `t_min` may be negative.
+typedef struct GnomonRay {
+    // Where `t` is 0, in the scene's units.
+    float origin[3];
+    // Hits with `t_min <= t <= t_max` count.
+    float t_min;
+    // Need not be of unit length: `t` counts in its lengths.
+    float direction[3];
+    // See `t_min`.
+    float t_max;
+} GnomonRay;
+
+// What a ray hits first. 36 bytes.
+//
+// Of two hits with the same `t` the one with the lower `(geometry_id, primitive_id)` wins.
+typedef struct GnomonHit {
+    // In lengths of the ray's direction; `INFINITY` for a miss.
+    float t;
+    // The hit point is `(1 - u - v) * p0 + u * p1 + v * p2` of the triangle's vertices; 0 for a miss.
+    float u;
+    // See `u`.
+    float v;
+    // `(p1 - p0) x (p2 - p0)`, not normalised (Embree's `Ng`), each component rounded once from double; 0 for a miss.
+    float normal[3];
+    // The triangle's index within its geometry; `GNOMON_INVALID_ID` for a miss.
+    uint32_t primitive_id;
+    // What `gnomon_scene_builder_add_triangles` gave; `GNOMON_INVALID_ID` for a miss.
+    uint32_t geometry_id;
+    // `GNOMON_INVALID_ID` where no instance is involved.
+    uint32_t instance_id;
+} GnomonHit;
+
 #ifdef __cplusplus
 extern "C" {
-#endif
-void gnomon_build_options_init(GnomonBuildOptions *);
-void gnomon_query_options_init(GnomonQueryOptions *);
-GnomonSceneBuilder *gnomon_scene_builder_new(void);
-GnomonStatus gnomon_scene_builder_add_triangles(GnomonSceneBuilder *, const GnomonTriangles *, uint32_t *geometry_id_out);
-GnomonStatus gnomon_scene_build(const GnomonSceneBuilder *, const GnomonBuildOptions *, GnomonScene **scene_out);
-void gnomon_scene_builder_free(GnomonSceneBuilder *);
-void gnomon_scene_free(GnomonScene *);
-bool gnomon_intersect(const GnomonScene *, const GnomonRay *, GnomonHit *hit_out);
-bool gnomon_occluded(const GnomonScene *, const GnomonRay *);
-GnomonStatus gnomon_intersect_n(const GnomonScene *, const GnomonRay *rays, size_t count, GnomonHit *hits_out, const GnomonQueryOptions *);
-GnomonStatus gnomon_occluded_n(const GnomonScene *, const GnomonRay *rays, size_t count, uint8_t *occluded_out, const GnomonQueryOptions *);
-GnomonStatus gnomon_scene_bounds(const GnomonScene *, float lower_out[3], float upper_out[3]);
-GnomonStatus gnomon_scene_stats(const GnomonScene *, size_t stats_bytes, GnomonSceneStats *stats_out);
+#endif // __cplusplus
+
+// The last failure of the calling thread as one sentence that names the culprit and its values: which geometry, which triangle,
+// which index. "" before the first one; a later success does not clear it.
+//
+// The text is UTF-8 and ends with a NUL; it belongs to the library and stays valid until the next failing call on the same
+// thread, or the thread's end. Any thread may call this.
 const char *gnomon_last_error(void);
-const char *gnomon_status_name(uint32_t);
+
+// The name of a status, for example "GNOMON_ERROR_OUT_OF_MEMORY"; "GNOMON_STATUS_UNKNOWN" for a number without a meaning.
+//
+// The text is static. Any thread may call this.
+const char *gnomon_status_name(uint32_t status);
+
+// Fills in the defaults. A null pointer is an error that `gnomon_last_error` tells.
+void gnomon_build_options_init(struct GnomonBuildOptions *options_out);
+
+// Fills in the defaults. A null pointer is an error that `gnomon_last_error` tells.
+void gnomon_query_options_init(struct GnomonQueryOptions *options_out);
+
+// A builder without meshes, to be freed with `gnomon_scene_builder_free`. NULL if memory ran out.
+struct GnomonSceneBuilder *gnomon_scene_builder_new(void);
+
+// Copies a mesh into the builder; the caller's arrays may go afterwards.
+//
+// `geometry_id_out` gets the mesh's id: 0 for the first, 1 for the second, and so on. It may be NULL.
+// Coordinates are not looked at before the build, which decides by `invalid_triangles` about those that are not finite.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown index format, a stride that is too small, counts that no
+// memory can hold, or an index out of range (the message names the geometry, the triangle, the index, and how many vertices there
+// are); `GNOMON_ERROR_OUT_OF_MEMORY`. On an error the builder is as it was.
+GnomonStatus gnomon_scene_builder_add_triangles(struct GnomonSceneBuilder *builder,
+                                                const struct GnomonTriangles *triangles,
+                                                uint32_t *geometry_id_out);
+
+// Frees a builder; scenes built from it stay. NULL is fine.
+void gnomon_scene_builder_free(struct GnomonSceneBuilder *builder);
+
+// Builds a scene from all meshes of a builder; the builder stays as it is and may build again. Without any mesh the scene is empty: every ray misses.
+//
+// `options` may be NULL for the defaults. `scene_out` gets the scene, to be freed with `gnomon_scene_free`; it is not touched on an error.
+// Threads: see `thread_count`. Other threads may build other scenes, and query this builder's earlier ones, meanwhile.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that is not finite (unless it
+// is to be skipped; the message names the geometry, the triangle and the vertex); `GNOMON_ERROR_UNSUPPORTED`;
+// `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
+GnomonStatus gnomon_scene_build(const struct GnomonSceneBuilder *builder,
+                                const struct GnomonBuildOptions *options,
+                                struct GnomonScene **scene_out);
+
+// Frees a scene. NULL is fine.
+void gnomon_scene_free(struct GnomonScene *scene);
+
+// The box of all triangles that were not skipped, those of zero area among them. Without any, lower is `INFINITY` and upper
+// `-INFINITY`.
+//
+// `lower_out` and `upper_out` get three floats each (x, y, z), exact. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer.
+// Any thread may call this.
+GnomonStatus gnomon_scene_bounds(const struct GnomonScene *scene,
+                                 float lower_out[3],
+                                 float upper_out[3]);
+
+// What a scene is made of and what its build took.
+//
+// Writes the first `stats_bytes` bytes: pass `sizeof(GnomonSceneStats)`, and a program compiled against an older header gets the fields
+// that it knows; bytes beyond those that this library knows become 0. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null
+// pointer. Any thread may call this.
+GnomonStatus gnomon_scene_stats(const struct GnomonScene *scene,
+                                size_t stats_bytes,
+                                struct GnomonSceneStats *stats_out);
+
+// The closest hit of a ray: true if there is one, and `hit_out` gets it; false for a miss, and `hit_out` says so.
+//
+// Accuracy: see `GNOMON_PRECISION_*`; the answer is the same on every instruction set and in every structure, and `gnomon_occluded`
+// never disagrees. Any number of threads may call this on one scene. A null pointer answers false and sets `gnomon_last_error`;
+// `hit_out` then is not touched.
+bool gnomon_intersect(const struct GnomonScene *scene,
+                      const struct GnomonRay *ray,
+                      struct GnomonHit *hit_out);
+
+// Whether a ray hits anything at all: for shadows and visibility.
+//
+// True just where `gnomon_intersect` is, and usually faster. Any number of threads may call this on one scene. A null
+// pointer answers false and sets `gnomon_last_error`.
+bool gnomon_occluded(const struct GnomonScene *scene,
+                     const struct GnomonRay *ray);
+
+// As `gnomon_intersect` for each of `count` rays, with the same answers to the bit, shared out among threads.
+//
+// `hits_out` gets one hit a ray, in the rays' order; the two arrays must not overlap. `options` may be NULL for the defaults.
+// `count` 0 is fine, the arrays then may be NULL.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an array that is not aligned for floats, or a count that no memory can
+// hold; nothing is written then. Any number of threads may call this on one scene.
+GnomonStatus gnomon_intersect_n(const struct GnomonScene *scene,
+                                const struct GnomonRay *rays,
+                                size_t count,
+                                struct GnomonHit *hits_out,
+                                const struct GnomonQueryOptions *options);
+
+// As `gnomon_occluded` for each of `count` rays, shared out among threads.
+//
+// `occluded_out` gets one byte a ray, 1 where it hits anything and 0 where not; the two arrays must not overlap. The rest is as
+// for `gnomon_intersect_n`.
+GnomonStatus gnomon_occluded_n(const struct GnomonScene *scene,
+                               const struct GnomonRay *rays,
+                               size_t count,
+                               uint8_t *occluded_out,
+                               const struct GnomonQueryOptions *options);
+
+// The version of the library that answers, as `major * 10000 + minor * 100 + patch`.
+//
+// Until version 1 a minor version may change the interface; the shared library's name tells them apart. Any thread may call this.
 uint32_t gnomon_version(void);
+
+// The same as text, for example "0.1.0". Static. Any thread may call this.
 const char *gnomon_version_string(void);
+
 #ifdef __cplusplus
-}
-#endif
-#endif
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* GNOMON_H */

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 
 #include "gnomon.h"
@@ -24,30 +25,44 @@ struct BuildReport {
     std::uint64_t triangles = 0, bytes = 0, nodes = 0, references = 0, depth = 0;
 };
 
-/// fresh: each ray is written field by field right before its call; prefilled: single calls over an array in the engine's own layout, written by prepare(); batch: one call for all.
+/// fresh: each ray is written field by field right before its call and its answer read right after;
+/// prefilled: single calls over an array in the engine's own layout, written before; batch: one call for all.
 enum class CallForm { fresh, prefilled, batch };
 
+/// A build that an engine refused or failed at.
+struct BuildError : std::runtime_error {
+    BuildError(GnomonStatus status, const std::string& what) : std::runtime_error(what), status(status) {}
+    GnomonStatus status;
+};
+
+/// An answer is a GnomonHit whatever the engine; a miss has t = +inf and GNOMON_INVALID_ID.
 class Backend {
 public:
     virtual ~Backend() = default;
 
     const BuildReport& report() const { return report_; }
 
-    /// Copies the rays into the engine's own layout, for CallForm::prefilled. Not timed. The rays must outlive the calls.
+    /// Sets the rays for the calls that follow; they must outlive them. Not timed.
     virtual void prepare(std::span<const GnomonRay> rays) = 0;
 
-    /// Traces the prepared rays; hits has one entry a ray. `threads` applies to batch alone. An invalid ray is a miss (Embree never sees it).
-    virtual void intersect(CallForm form, std::span<GnomonHit> hits, std::uint32_t threads) = 0;
-    virtual void occluded(CallForm form, std::span<std::uint8_t> occluded, std::uint32_t threads) = 0;
+    /// Traces the prepared rays into `hits`, one entry a ray; returns the seconds spent tracing, without laying out records
+    /// before or reading them after. `threads` applies to batch alone. An invalid ray is a miss.
+    virtual double intersect(CallForm form, std::span<GnomonHit> hits, std::uint32_t threads) = 0;
+    virtual double occluded(CallForm form, std::span<std::uint8_t> occluded, std::uint32_t threads) = 0;
+
+    /// The engine's function behind a form, by its own name; for batch, after a first call.
+    virtual std::string call_name(CallForm form, bool occlusion) const = 0;
 
 protected:
     BuildReport report_;
 };
 
-/// Throws std::runtime_error with gnomon_last_error() when the build fails.
+/// Throws BuildError with gnomon_last_error() when the build fails.
 std::unique_ptr<Backend> make_gnomon(const Scene& scene, const GnomonBuildOptions& options);
 
 /// Null when this program was built without Embree. `quality` is a GNOMON_QUALITY_ value.
+/// Rays that Embree cannot take (not finite, t_min < 0, coordinates beyond its limit) are answered as misses.
+/// Embree reads the scene's indices in place: the scene must outlive the backend.
 std::unique_ptr<Backend> make_embree(const Scene& scene, bool robust, std::uint32_t quality, std::uint32_t threads);
 
 /// "3.13.5", or "" without Embree.

@@ -20,7 +20,10 @@ public:
     double uniform() { return double(next() >> 11) * 0x1p-53; }
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
     /// Uniform in [0, bound).
-    std::uint64_t below(std::uint64_t bound) { return std::uint64_t((static_cast<unsigned __int128>(next()) * bound) >> 64); }
+    std::uint64_t below(std::uint64_t bound) {
+        __extension__ using Wide = unsigned __int128;
+        return std::uint64_t((static_cast<Wide>(next()) * bound) >> 64);
+    }
 
 private:
     std::uint64_t state_;

@@ -13,21 +13,23 @@ namespace harness {
 /// What one triangle is to one ray.
 struct Candidate {
     std::uint32_t geometry_id, primitive_id;
-    bool exact_hit;    // the closed triangle and the line meet in one point: the exact signs say so
-    bool in_band;      // an edge passes the ray within the band of accuracy.md: a decision in f32 may go either way
-    float t;           // the exact t (a rational), rounded once to the nearest float; meaningful for exact hits
-    double t_exact;    // the same rational, rounded to double
+    bool exact_hit;  // the closed triangle and the line meet in one point: the exact signs say so
+    bool in_band;    // an edge passes the ray within the band of accuracy.md: a decision in f32 may go either way
+    float t;         // the exact t (a rational), rounded once to the nearest float; of the triangle's plane where it is no
+                     // exact hit, +inf where the plane is parallel to the ray
+    double t_exact;  // the same rational, rounded to double
 };
 
-/// What an engine did on one ray, against the truth. All raw judgements use the exact t rounded once, against a closed [t_min, t_max].
+/// What an engine did on one ray, against the truth. All raw judgements use the exact t rounded once, against a closed [t_min,
+/// t_max]. A t that rounds to infinity is no hit: +inf is a miss's t.
 struct Verdict {
     bool missed = false;            // there is an exact hit, the engine reported none
-    bool false_hit = false;         // the engine reported a triangle that the ray does not hit exactly, or not within the interval
+    bool false_hit = false;         // the triangle reported is not hit exactly, or not within the interval
     bool wrong_primitive = false;   // it reported a true hit, but not the closest
-    bool tie = false;               // it reported another triangle than the oracle's first, at the same t once rounded: not wrong
-    bool outside_contract = false;  // beyond what accuracy.md promises for ACCURATE: see judge()
-    double t_ulps = -1;             // |t - exact t of the reported triangle| in ulps of the exact t's float; -1 where there is no true hit to compare
-    double uv_error = -1;           // max(|u - exact|, |v - exact|) in units of 2^-24; -1 likewise
+    bool tie = false;               // it reported another triangle than the oracle's first, at the same rounded t: not wrong
+    bool outside_contract = false;  // beyond what accuracy.md promises for the precision: see judge.cpp
+    double t_ulps = -1;             // |t - exact t of the reported triangle| in ulps of the exact t's float
+    double uv_error = -1;           // max(|u - exact|, |v - exact|) in units of 2^-24; both -1 without a true hit to compare
 };
 
 /// What the contract promises, by precision: `exact` turns the band off.
@@ -35,13 +37,19 @@ enum class Contract { none, banded, exact };
 
 class Oracle {
 public:
+    /// Refers to the scene, which must live as long. Triangles with a non-finite vertex are left out.
     explicit Oracle(const Scene& scene);
+    explicit Oracle(Scene&&) = delete;
     ~Oracle();
     Oracle(const Oracle&) = delete;
     Oracle& operator=(const Oracle&) = delete;
 
-    /// All triangles that the ray hits or could be taken to hit in f32, sorted by (t, geometry_id, primitive_id). Ignores the interval.
+    /// All triangles that the ray hits or could be taken to hit in f32, sorted by (t, geometry_id, primitive_id). Ignores the
+    /// interval.
     std::vector<Candidate> candidates(const GnomonRay& ray) const;
+
+    /// The same, asking every triangle: the check of the culling.
+    std::vector<Candidate> candidates_unculled(const GnomonRay& ray) const;
 
     /// Exact hits with the rounded t in [t_min, t_max]; the closest first; empty for a miss or an invalid ray.
     std::vector<Candidate> hits(const GnomonRay& ray) const;

@@ -24,19 +24,27 @@ struct Camera {
     GnomonRay ray(double x, double y) const;  // x, y in [0, 1]
 };
 
-/// Looks at the whole scene from outside, from a direction in which its box shows much area.
+/// Looks at the whole scene from outside, from a direction in which its box shows much area. Throws SceneError when no vertex is
+/// finite.
 Camera outside_camera(const Scene& scene);
 
 /// `count` rays through the pixels of a near-square image, in scanline order.
 RaySet primary_rays(const Camera& camera, std::size_t count);
 
-/// Cosine-distributed rays from the hits of `primary` (answers in `hits`, one a ray), started off the surface by a bound on the hit point's error. Repeats hits until there are `count`.
-RaySet bounce_rays(const Scene& scene, const RaySet& primary, const std::vector<GnomonHit>& hits, std::size_t count, std::uint64_t seed);
+/// Cosine-distributed rays from the hits of `primary` (answers in `hits`, one a ray), started off the surface by a bound on the
+/// hit point's error. Repeats hits until there are `count`; none when nothing was hit.
+RaySet bounce_rays(const Scene& scene, const RaySet& primary, const std::vector<GnomonHit>& hits, std::size_t count,
+                   std::uint64_t seed);
 
 /// From the same hits towards random points of a square light above the scene; t_max ends at the light.
-RaySet shadow_rays(const Scene& scene, const RaySet& primary, const std::vector<GnomonHit>& hits, std::size_t count, std::uint64_t seed);
+/// Hits that face away from the light are left out, so there may be no ray at all.
+RaySet shadow_rays(const Scene& scene, const RaySet& primary, const std::vector<GnomonHit>& hits, std::size_t count,
+                   std::uint64_t seed);
 
-/// Between two uniform random points of the scene's box grown by a tenth.
+/// From one uniform random point of the scene's box, grown by a tenth, towards another; t_max is infinite.
 RaySet random_rays(const Scene& scene, std::size_t count, std::uint64_t seed);
+
+/// `count` of the rays, evenly spread, so that the part looks like the whole; all of them where there are no more.
+std::vector<GnomonRay> spread_rays(const std::vector<GnomonRay>& rays, std::size_t count);
 
 }  // namespace harness

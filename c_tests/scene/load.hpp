@@ -17,10 +17,12 @@ struct SceneError : std::runtime_error {
 /// `spec` is a path to a .glb or .gltf file, or `gen:NAME[:TRIANGLES]`. Throws SceneError.
 Scene load_scene(const std::string& spec);
 
-/// Every .glb and .gltf of the default scene: the triangles of all nodes of the default scene, node transforms applied in double and rounded once. Throws SceneError.
+/// Every .glb and .gltf of the default scene: the triangles of all nodes of the default scene, node transforms applied in double
+/// and rounded once. Throws SceneError.
 Scene load_gltf(const std::string& path);
 
-/// A generated scene with about `triangle_count` triangles (0: the generator's own default). Throws SceneError that lists the names.
+/// A generated scene with about `triangle_count` triangles (0: the generator's own default). Throws SceneError that lists the
+/// names.
 Scene generate_scene(const std::string& name, std::size_t triangle_count);
 
 struct GeneratorInfo {

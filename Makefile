@@ -1,0 +1,73 @@
+# Everything for a user and for a developer, from a fresh Debian machine on: `make help` lists it.
+# Built under $(BUILD) and target/.
+
+# rustup puts cargo here, and on PATH only from the next login.
+export PATH := $(PATH):$(HOME)/.cargo/bin
+
+BUILD ?= build
+OUT ?= $(BUILD)/compare
+JOBS ?= $(shell nproc)
+SCENE ?= /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb \
+         gen:terrain gen:interior gen:hair $(wildcard ../shared/scenes/*.glb)
+
+ctest = ctest --output-on-failure --no-tests=error --parallel $(JOBS)
+
+.DEFAULT_GOAL := help
+.PHONY: help build compare test test-slow check test-rust test-c test-sanitized format clean packages packages-test cargo
+
+help: ## List the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+build: packages cargo ## Build the library and gnomon-compare
+	cmake -S . -B $(BUILD)
+	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-compare
+
+compare: build ## Compare with Embree; SCENE="file.glb gen:NAME ..." OUT=dir ARGS="options of gnomon-compare"
+	@mkdir -p $(OUT)
+	@status=0; \
+	$(BUILD)/bin/gnomon-compare --json $(OUT)/compare.json --html $(OUT)/report.html $(ARGS) $(SCENE) || status=$$?; \
+	[ $$status -gt 1 ] || echo "results: $(OUT)/compare.json and $(OUT)/report.html"; \
+	exit $$status
+
+test: packages-test cargo check test-rust test-sanitized test-c ## Check the style and run all but the slow tests
+
+check: cargo
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --locked -- --deny warnings
+	find c_tests -name '*.[ch]' -o -name '*.[ch]pp' | xargs clang-format --dry-run --Werror
+
+test-rust: cargo
+	if cargo nextest --version >/dev/null 2>&1; \
+	then cargo nextest run --locked --cargo-quiet && cargo test --locked --doc --quiet; \
+	else cargo test --locked --quiet; fi
+
+test-c: cargo
+	cmake -S . -B $(BUILD)
+	cmake --build $(BUILD) --parallel $(JOBS)
+	$(ctest) --test-dir $(BUILD) --label-exclude slow
+
+test-sanitized: cargo ## The C interface's suites under AddressSanitizer and UndefinedBehaviorSanitizer
+	cmake -S . -B $(BUILD)/sanitized -DGNOMON_SANITIZE=ON
+	cmake --build $(BUILD)/sanitized --parallel $(JOBS) --target api_suites
+	$(ctest) --test-dir $(BUILD)/sanitized --label-regex api --tests-regex '_suite$$'
+
+test-slow: packages-test cargo ## Run the slow tests
+	cmake -S . -B $(BUILD)
+	cmake --build $(BUILD) --parallel $(JOBS)
+	$(ctest) --test-dir $(BUILD) --label-regex slow
+
+format: cargo ## Format the Rust, C and C++ sources
+	cargo fmt --all
+	find c_tests -name '*.[ch]' -o -name '*.[ch]pp' | xargs clang-format -i
+
+clean: ## Remove what was built
+	rm -rf $(BUILD) target
+
+packages:
+	@sh cmake/debian-packages.sh compare
+
+packages-test:
+	@sh cmake/debian-packages.sh test
+
+cargo:
+	@command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs, then run make again"; exit 1; }

@@ -1,0 +1,66 @@
+// The layouts that the header promises, asserted on the C side; the library asserts the same on its own.
+#include <stddef.h>
+
+#include "gnomon.h"
+
+#define ASSERT_SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), "size of " #type)
+#define ASSERT_OFFSET(type, field, bytes) _Static_assert(offsetof(type, field) == (bytes), "offset of " #type "." #field)
+
+ASSERT_SIZE(GnomonStatus, 4);
+
+ASSERT_SIZE(GnomonRay, 32);
+ASSERT_OFFSET(GnomonRay, origin, 0);
+ASSERT_OFFSET(GnomonRay, t_min, 12);
+ASSERT_OFFSET(GnomonRay, direction, 16);
+ASSERT_OFFSET(GnomonRay, t_max, 28);
+
+ASSERT_SIZE(GnomonHit, 36);
+ASSERT_OFFSET(GnomonHit, t, 0);
+ASSERT_OFFSET(GnomonHit, u, 4);
+ASSERT_OFFSET(GnomonHit, v, 8);
+ASSERT_OFFSET(GnomonHit, normal, 12);
+ASSERT_OFFSET(GnomonHit, primitive_id, 24);
+ASSERT_OFFSET(GnomonHit, geometry_id, 28);
+ASSERT_OFFSET(GnomonHit, instance_id, 32);
+
+ASSERT_SIZE(GnomonTriangles, 56);
+ASSERT_OFFSET(GnomonTriangles, positions, 0);
+ASSERT_OFFSET(GnomonTriangles, position_stride, 8);
+ASSERT_OFFSET(GnomonTriangles, vertex_count, 16);
+ASSERT_OFFSET(GnomonTriangles, indices, 24);
+ASSERT_OFFSET(GnomonTriangles, index_format, 32);
+ASSERT_OFFSET(GnomonTriangles, index_stride, 40);
+ASSERT_OFFSET(GnomonTriangles, triangle_count, 48);
+
+ASSERT_SIZE(GnomonBuildOptions, 56);
+ASSERT_OFFSET(GnomonBuildOptions, struct_size, 0);
+ASSERT_OFFSET(GnomonBuildOptions, structure, 4);
+ASSERT_OFFSET(GnomonBuildOptions, quality, 8);
+ASSERT_OFFSET(GnomonBuildOptions, precision, 12);
+ASSERT_OFFSET(GnomonBuildOptions, isa, 16);
+ASSERT_OFFSET(GnomonBuildOptions, thread_count, 20);
+ASSERT_OFFSET(GnomonBuildOptions, invalid_triangles, 24);
+ASSERT_OFFSET(GnomonBuildOptions, memory_limit_bytes, 32);
+ASSERT_OFFSET(GnomonBuildOptions, progress, 40);
+ASSERT_OFFSET(GnomonBuildOptions, progress_user, 48);
+
+ASSERT_SIZE(GnomonQueryOptions, 8);
+ASSERT_OFFSET(GnomonQueryOptions, struct_size, 0);
+ASSERT_OFFSET(GnomonQueryOptions, thread_count, 4);
+
+ASSERT_SIZE(GnomonSceneStats, 104);
+ASSERT_OFFSET(GnomonSceneStats, triangle_count, 0);
+ASSERT_OFFSET(GnomonSceneStats, node_count, 8);
+ASSERT_OFFSET(GnomonSceneStats, leaf_count, 16);
+ASSERT_OFFSET(GnomonSceneStats, reference_count, 24);
+ASSERT_OFFSET(GnomonSceneStats, skipped_count, 32);
+ASSERT_OFFSET(GnomonSceneStats, depth, 40);
+ASSERT_OFFSET(GnomonSceneStats, structure, 44);
+ASSERT_OFFSET(GnomonSceneStats, precision, 48);
+ASSERT_OFFSET(GnomonSceneStats, isa, 52);
+ASSERT_OFFSET(GnomonSceneStats, bytes, 56);
+ASSERT_OFFSET(GnomonSceneStats, node_bytes, 64);
+ASSERT_OFFSET(GnomonSceneStats, leaf_bytes, 72);
+ASSERT_OFFSET(GnomonSceneStats, peak_build_bytes, 80);
+ASSERT_OFFSET(GnomonSceneStats, build_seconds, 88);
+ASSERT_OFFSET(GnomonSceneStats, sah_cost, 96);

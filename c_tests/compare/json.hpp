@@ -1,0 +1,15 @@
+// The results as one JSON object, for other programs and for the report.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "compare/machine.hpp"
+#include "compare/results.hpp"
+
+namespace harness {
+
+/// A figure that does not exist is null.
+nlohmann::ordered_json to_json(const Machine& machine, const Versions& versions, const std::vector<SceneResult>& scenes);
+
+}  // namespace harness

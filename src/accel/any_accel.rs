@@ -1,0 +1,62 @@
+//! The structures as one type, matched once a call: a new one cannot be forgotten.
+
+use super::brute_force::BruteForce;
+use super::bvh::{BinnedSah, Bvh, Median};
+use super::stats::Shape;
+use super::{BuildContext, BuildFailure, Quality, Structure};
+use crate::geometry::{Aabb, Triangle};
+
+pub(crate) enum AnyAccel {
+    BruteForce(BruteForce),
+    Bvh(Bvh),
+}
+
+impl AnyAccel {
+    pub(crate) fn shape(&self) -> Shape {
+        match self {
+            Self::BruteForce(brute_force) => brute_force.shape(),
+            Self::Bvh(bvh) => bvh.shape(),
+        }
+    }
+}
+
+/// What `Auto` stands for. Up to this many triangles brute force measures faster than the BVH, whose box tests cost
+/// as much as they save: 8 triangles 1.0x, 4 triangles 1.4x.
+pub(crate) fn choose(asked: Structure, triangle_count: usize) -> Structure {
+    const MOST_FOR_BRUTE_FORCE: usize = 6;
+    match asked {
+        _ if triangle_count == 0 => Structure::BruteForce,
+        Structure::Auto if triangle_count <= MOST_FOR_BRUTE_FORCE => Structure::BruteForce,
+        Structure::Auto => Structure::Bvh,
+        other => other,
+    }
+}
+
+/// What the choice names that has no builder yet.
+pub(crate) fn unsupported(structure: Structure, quality: Quality) -> Option<&'static str> {
+    let structure = match structure {
+        Structure::Auto | Structure::BruteForce | Structure::Bvh => None,
+        Structure::Grid => Some("GNOMON_STRUCTURE_GRID, the uniform grid,"),
+        Structure::Octree => Some("GNOMON_STRUCTURE_OCTREE, the octree,"),
+        Structure::KdTree => Some("GNOMON_STRUCTURE_KD_TREE, the kd-tree,"),
+        Structure::BspTree => Some("GNOMON_STRUCTURE_BSP_TREE, the BSP tree,"),
+        Structure::WideBvh => Some("GNOMON_STRUCTURE_WIDE_BVH, the wide BVH,"),
+    };
+    structure.or_else(|| (quality == Quality::High).then_some("GNOMON_QUALITY_HIGH"))
+}
+
+/// Builds what [`choose`] made of a choice that is not [`unsupported`].
+pub(crate) fn build(
+    structure: Structure,
+    quality: Quality,
+    triangles: Vec<Triangle>,
+    bounds: Aabb,
+    context: &BuildContext,
+) -> Result<AnyAccel, BuildFailure> {
+    match (structure, quality) {
+        (Structure::BruteForce, _) => BruteForce::build(triangles, context).map(AnyAccel::BruteForce),
+        (Structure::Bvh, Quality::Low) => Bvh::build(triangles, bounds, &Median, context).map(AnyAccel::Bvh),
+        (Structure::Bvh, Quality::Medium) => Bvh::build(triangles, bounds, &BinnedSah, context).map(AnyAccel::Bvh),
+        _ => unreachable!("{structure:?} of quality {quality:?} is refused before anything is built"),
+    }
+}

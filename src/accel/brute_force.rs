@@ -1,0 +1,40 @@
+//! No structure: every triangle is asked. The fastest for a handful, and the answer that the others are held against.
+
+use super::leaf::{ClosestHit, Query, test_triangles};
+use super::stats::Shape;
+use super::{Accel, BuildContext, BuildFailure};
+use crate::geometry::{PrecisionMode, Ray, Triangle, TriangleRay};
+
+pub(crate) struct BruteForce {
+    triangles: Vec<Triangle>,
+}
+
+impl BruteForce {
+    pub(crate) fn build(triangles: Vec<Triangle>, context: &BuildContext) -> Result<Self, BuildFailure> {
+        context.advance(triangles.len())?;
+        Ok(Self { triangles })
+    }
+
+    pub(crate) fn shape(&self) -> Shape {
+        Shape {
+            node_count: 0,
+            leaf_count: 0,
+            depth: 0,
+            node_bytes: 0,
+            leaf_bytes: size_of_val(self.triangles.as_slice()),
+            sah_cost: self.triangles.len() as f64,
+        }
+    }
+}
+
+impl Accel for BruteForce {
+    fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
+        let mut best = ClosestHit::none(ray);
+        test_triangles::<Q, P>(&self.triangles, 0, &TriangleRay::new(ray), ray.t_min, &mut best);
+        best.found()
+    }
+
+    fn triangle(&self, hit: &ClosestHit) -> &Triangle {
+        &self.triangles[hit.index as usize]
+    }
+}

@@ -1,0 +1,70 @@
+//! Binary bounding volume hierarchy: a box in every node, two children or a run of triangles below it.
+//!
+//! Shines on everything that is unevenly spread; each triangle is stored once. Fails where boxes overlap much: long
+//! diagonal triangles, many triangles in one place.
+
+mod build;
+mod node;
+mod split_median;
+mod split_sah;
+mod traverse;
+#[cfg(any(test, debug_assertions))]
+mod validate;
+
+pub(crate) use split_median::Median;
+pub(crate) use split_sah::BinnedSah;
+
+use build::SplitRule;
+use node::{Node, NodePair};
+
+use super::stats::Shape;
+use super::{Accel, BuildContext, BuildFailure, ClosestHit, Query};
+use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
+
+pub(crate) struct Bvh {
+    bounds: Aabb,
+    root: Node,
+    /// In depth-first order.
+    pairs: Vec<NodePair>,
+    /// In the order of the leaves.
+    triangles: Vec<Triangle>,
+    depth: u32,
+    sah_cost: f64,
+}
+
+impl Bvh {
+    /// At least one triangle; `bounds` contains them all.
+    pub(crate) fn build<R: SplitRule>(
+        triangles: Vec<Triangle>,
+        bounds: Aabb,
+        rule: &R,
+        context: &BuildContext,
+    ) -> Result<Self, BuildFailure> {
+        let bvh = build::build(triangles, bounds, rule, context)?;
+        #[cfg(any(test, debug_assertions))]
+        bvh.validate().expect("a builder keeps the tree's invariants");
+        Ok(bvh)
+    }
+
+    pub(crate) fn shape(&self) -> Shape {
+        let leaf_count = self.pairs.len() + 1;
+        Shape {
+            node_count: self.pairs.len() + leaf_count,
+            leaf_count,
+            depth: self.depth,
+            node_bytes: size_of_val(self.pairs.as_slice()),
+            leaf_bytes: size_of_val(self.triangles.as_slice()),
+            sah_cost: self.sah_cost,
+        }
+    }
+}
+
+impl Accel for Bvh {
+    fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
+        self.traverse::<Q, P>(ray)
+    }
+
+    fn triangle(&self, hit: &ClosestHit) -> &Triangle {
+        &self.triangles[hit.index as usize]
+    }
+}

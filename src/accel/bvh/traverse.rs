@@ -1,0 +1,78 @@
+//! Front to back with a stack: the nearer child first, the other one later if it still can matter.
+
+use super::Bvh;
+use super::node::{MOST_LEVELS, Node};
+use crate::accel::leaf::{ClosestHit, Query, test_triangles};
+use crate::geometry::{PrecisionMode, Ray, SlabRay, TriangleRay};
+
+/// A node that waits, and where the ray enters it.
+#[derive(Clone, Copy)]
+struct Pending {
+    enter: f32,
+    first: u32,
+    count: u32,
+}
+
+impl Pending {
+    fn new(node: &Node, enter: f32) -> Self {
+        Self { enter, first: node.first, count: node.count }
+    }
+}
+
+impl Bvh {
+    #[inline(always)]
+    pub(super) fn traverse<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
+        let slabs = SlabRay::new(ray, &self.bounds);
+        let triangle_ray = TriangleRay::new(ray);
+        let t_min = ray.t_min * slabs.time_scale;
+        let mut t_max = ray.t_max * slabs.time_scale;
+        let mut best = ClosestHit::none(ray);
+
+        let mut stack = [Pending { enter: 0.0, first: 0, count: 0 }; MOST_LEVELS];
+        let mut stack_len = 0;
+        let mut node = Pending::new(&self.root, slabs.enter(&self.root.planes, t_min, t_max)?);
+        loop {
+            if node.count != 0 {
+                let triangles = &self.triangles[node.first as usize..][..node.count as usize];
+                if test_triangles::<Q, P>(triangles, node.first, &triangle_ray, ray.t_min, &mut best) {
+                    break;
+                }
+                t_max = best.t * slabs.time_scale;
+            } else {
+                let [left, right] = &self.pairs[node.first as usize].children;
+                let enter_left = slabs.enter(&left.planes, t_min, t_max);
+                let enter_right = slabs.enter(&right.planes, t_min, t_max);
+                match (enter_left, enter_right) {
+                    (Some(at_left), Some(at_right)) => {
+                        let (left, right) = (Pending::new(left, at_left), Pending::new(right, at_right));
+                        let (near, far) = if at_right < at_left { (right, left) } else { (left, right) };
+                        stack[stack_len] = far;
+                        stack_len += 1;
+                        node = near;
+                        continue;
+                    }
+                    (Some(at_left), None) => {
+                        node = Pending::new(left, at_left);
+                        continue;
+                    }
+                    (None, Some(at_right)) => {
+                        node = Pending::new(right, at_right);
+                        continue;
+                    }
+                    (None, None) => {}
+                }
+            }
+            // A node that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
+            node = loop {
+                if stack_len == 0 {
+                    return best.found();
+                }
+                stack_len -= 1;
+                if stack[stack_len].enter <= t_max {
+                    break stack[stack_len];
+                }
+            };
+        }
+        best.found()
+    }
+}

@@ -1,0 +1,50 @@
+//! What a traversal relies on, checked after every build in debug builds and tests.
+
+use super::Bvh;
+use super::node::{MOST_LEVELS, Node};
+use crate::geometry::Aabb;
+
+impl Bvh {
+    /// Every box contains what is below it, every triangle is in one leaf, and the stack suffices.
+    pub(crate) fn validate(&self) -> Result<(), String> {
+        let mut triangle_seen = vec![false; self.triangles.len()];
+        let mut deepest = 0;
+        let mut pending = vec![(self.root, self.bounds, 1)];
+        while let Some((node, parent, level)) = pending.pop() {
+            deepest = deepest.max(level);
+            let bounds = bounds_of(&node);
+            if !contains(&parent, &bounds) {
+                return Err(format!("the box {bounds:?} is not inside its parent's {parent:?}"));
+            }
+            if !node.is_leaf() {
+                let pair = self.pairs.get(node.first as usize).ok_or_else(|| format!("no pair {}", node.first))?;
+                pending.extend(pair.children.map(|child| (child, bounds, level + 1)));
+                continue;
+            }
+            for index in node.first..node.first + node.count {
+                let triangle = self.triangles.get(index as usize).ok_or_else(|| format!("no triangle {index}"))?;
+                if !contains(&bounds, &triangle.bounds()) {
+                    return Err(format!("triangle {index} is not inside its leaf's box {bounds:?}"));
+                }
+                if std::mem::replace(&mut triangle_seen[index as usize], true) {
+                    return Err(format!("triangle {index} is in two leaves"));
+                }
+            }
+        }
+        if let Some(index) = triangle_seen.iter().position(|seen| !seen) {
+            return Err(format!("triangle {index} is in no leaf"));
+        }
+        if deepest != self.depth || deepest as usize > MOST_LEVELS {
+            return Err(format!("{deepest} levels, {} stated, at most {MOST_LEVELS} allowed", self.depth));
+        }
+        Ok(())
+    }
+}
+
+fn bounds_of(node: &Node) -> Aabb {
+    Aabb { lower: node.planes.map(|[lower, _]| lower).into(), upper: node.planes.map(|[_, upper]| upper).into() }
+}
+
+fn contains(outer: &Aabb, inner: &Aabb) -> bool {
+    outer.lower.cmple(inner.lower).all() && outer.upper.cmpge(inner.upper).all()
+}

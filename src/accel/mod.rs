@@ -1,0 +1,25 @@
+//! Structures that find a ray's hit without asking every triangle, one a module, and what they share.
+
+mod any_accel;
+mod brute_force;
+mod build_context;
+mod bvh;
+mod leaf;
+mod stats;
+
+pub(crate) use any_accel::{AnyAccel, build, choose, unsupported};
+pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
+pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Query};
+pub use stats::{Precision, Quality, Stats, Structure};
+
+use crate::geometry::{PrecisionMode, Ray};
+
+/// What a structure can be asked. The precision and the kind of query are compile-time choices, so that a kernel
+/// holds no branch on either.
+pub(crate) trait Accel {
+    /// The closest hit, or any, of a valid ray.
+    fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit>;
+
+    /// The stored triangle that a hit names.
+    fn triangle(&self, hit: &ClosestHit) -> &crate::geometry::Triangle;
+}

@@ -1,0 +1,21 @@
+//! The C interface: pointers become references, one call is made, outputs are written. Nothing is decided here.
+//!
+//! The manual is `include/gnomon.h`, generated from these comments.
+#![expect(unsafe_code, reason = "the door to C: raw pointers come in here and nowhere else")]
+
+mod builder;
+mod options;
+mod pointers;
+mod query;
+mod scene;
+mod status;
+mod types;
+mod version;
+
+pub use builder::*;
+pub use options::*;
+pub use query::*;
+pub use scene::*;
+pub use status::*;
+pub use types::*;
+pub use version::*;

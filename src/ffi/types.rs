@@ -1,0 +1,151 @@
+//! Rays, hits, meshes, and what a scene tells about itself, as C sees them.
+
+use std::ffi::c_void;
+
+use glam::Vec3;
+
+use crate::geometry::{Hit, Ray};
+
+/// The id of what is not there: a miss's geometry and primitive, the instance where none is involved.
+pub const GNOMON_INVALID_ID: u32 = 0xFFFF_FFFF;
+
+/// `indices` are `uint16_t`.
+pub const GNOMON_INDEX_U16: u32 = 1;
+/// `indices` are `uint32_t`.
+pub const GNOMON_INDEX_U32: u32 = 2;
+
+/// `origin + t * direction` for `t` in the closed interval `[t_min, t_max]`. 32 bytes.
+///
+/// A ray with a NaN, an infinite origin or direction, a zero direction, or `t_min > t_max` misses everything. `t_max` may be
+/// `INFINITY`, `t_min` may be negative.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct GnomonRay {
+    /// Where `t` is 0, in the scene's units.
+    pub origin: [f32; 3],
+    /// Hits with `t_min <= t <= t_max` count.
+    pub t_min: f32,
+    /// Need not be of unit length: `t` counts in its lengths.
+    pub direction: [f32; 3],
+    /// See `t_min`.
+    pub t_max: f32,
+}
+
+/// What a ray hits first. 36 bytes.
+///
+/// Of two hits with the same `t` the one with the lower `(geometry_id, primitive_id)` wins.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct GnomonHit {
+    /// In lengths of the ray's direction; `INFINITY` for a miss.
+    pub t: f32,
+    /// The hit point is `(1 - u - v) * p0 + u * p1 + v * p2` of the triangle's vertices; 0 for a miss.
+    pub u: f32,
+    /// See `u`.
+    pub v: f32,
+    /// `(p1 - p0) x (p2 - p0)`, not normalised (Embree's `Ng`), each component rounded once from double; 0 for a miss.
+    pub normal: [f32; 3],
+    /// The triangle's index within its geometry; `GNOMON_INVALID_ID` for a miss.
+    pub primitive_id: u32,
+    /// What `gnomon_scene_builder_add_triangles` gave; `GNOMON_INVALID_ID` for a miss.
+    pub geometry_id: u32,
+    /// `GNOMON_INVALID_ID` where no instance is involved.
+    pub instance_id: u32,
+}
+
+/// A triangle mesh in the caller's memory, which `gnomon_scene_builder_add_triangles` copies.
+///
+/// No alignment is asked for, and nothing is read beyond the last byte of the last vertex and of the last index.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct GnomonTriangles {
+    /// Three floats (x, y, z) at the start of each stride; may be null without vertices.
+    pub positions: *const f32,
+    /// Bytes from one vertex to the next, at least 12; 0 means 12.
+    pub position_stride: usize,
+    /// How many vertices there are.
+    pub vertex_count: usize,
+    /// Three indices at the start of each stride, each below `vertex_count`. NULL: the vertices are taken three by three.
+    pub indices: *const c_void,
+    /// `GNOMON_INDEX_U16` or `GNOMON_INDEX_U32`; not looked at without `indices`.
+    pub index_format: u32,
+    /// Bytes from one triangle to the next, at least three indices; 0 means just three indices.
+    pub index_stride: usize,
+    /// How many triangles there are; their place in the order is their `primitive_id`. May be 0.
+    pub triangle_count: usize,
+}
+
+/// What a scene is made of. Later versions add fields at the end.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct GnomonSceneStats {
+    /// Triangles that were added, without the skipped ones.
+    pub triangle_count: u64,
+    /// Nodes, leaves among them; 0 for brute force.
+    pub node_count: u64,
+    /// Nodes without children.
+    pub leaf_count: u64,
+    /// Triangles stored in leaves; those of zero area, which nothing hits, are not stored.
+    pub reference_count: u64,
+    /// Triangles left out by `GNOMON_INVALID_SKIP`.
+    pub skipped_count: u64,
+    /// Nodes on the longest way from the root to a leaf, both counted; 0 without nodes.
+    pub depth: u32,
+    /// The `GNOMON_STRUCTURE_*` that was built.
+    pub structure: u32,
+    /// The `GNOMON_PRECISION_*` in use.
+    pub precision: u32,
+    /// The `GNOMON_ISA_*` in use.
+    pub isa: u32,
+    /// Memory that the scene holds.
+    pub bytes: u64,
+    /// Of these, for nodes.
+    pub node_bytes: u64,
+    /// Of these, for triangles.
+    pub leaf_bytes: u64,
+    /// The most that the build held at a time, the scene among it, the builder's copy of the meshes not.
+    pub peak_build_bytes: u64,
+    /// Wall-clock time of the build.
+    pub build_seconds: f64,
+    /// Expected cost of a random ray that meets the scene's box, in triangle tests (MacDonald and Booth 1990, "Heuristics for ray
+    /// tracing using space subdivision"); NaN where it has no meaning.
+    pub sah_cost: f64,
+}
+
+impl From<GnomonRay> for Ray {
+    fn from(ray: GnomonRay) -> Self {
+        Self {
+            origin: Vec3::from_array(ray.origin),
+            t_min: ray.t_min,
+            direction: Vec3::from_array(ray.direction),
+            t_max: ray.t_max,
+        }
+    }
+}
+
+impl From<Hit> for GnomonHit {
+    fn from(hit: Hit) -> Self {
+        Self {
+            t: hit.t,
+            u: hit.u,
+            v: hit.v,
+            normal: hit.normal.to_array(),
+            primitive_id: hit.primitive_id,
+            geometry_id: hit.geometry_id,
+            instance_id: hit.instance_id,
+        }
+    }
+}
+
+const _: () = assert!(size_of::<GnomonRay>() == 32);
+const _: () = assert!(size_of::<GnomonHit>() == 36);
+const _: () = assert!(std::mem::offset_of!(GnomonRay, direction) == 16);
+const _: () = assert!(std::mem::offset_of!(GnomonHit, primitive_id) == 24);
+#[cfg(target_pointer_width = "64")]
+const _: () = assert!(size_of::<GnomonTriangles>() == 56 && std::mem::offset_of!(GnomonTriangles, index_stride) == 40);
+const _: () = assert!(
+    size_of::<GnomonSceneStats>() == 104
+        && std::mem::offset_of!(GnomonSceneStats, depth) == 40
+        && std::mem::offset_of!(GnomonSceneStats, sah_cost) == 96
+);
+const _: () = assert!(GNOMON_INVALID_ID == crate::geometry::INVALID_ID);

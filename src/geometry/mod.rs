@@ -1,0 +1,14 @@
+//! Rays, boxes and triangles, and the scalar definition of every test between them.
+
+mod aabb;
+mod mesh_view;
+mod ray;
+mod triangle;
+mod triangle_hit;
+
+pub use aabb::Aabb;
+pub(crate) use aabb::SlabRay;
+pub use mesh_view::{IndexBytes, IndexView, PositionView, TriangleView, span_bytes};
+pub use ray::{Hit, INVALID_ID, Ray};
+pub(crate) use triangle::Triangle;
+pub(crate) use triangle_hit::{Accurate, Fast, PrecisionMode, TriangleHit, TriangleRay};

@@ -1,0 +1,7 @@
+//! Floating-point facts and error-free arithmetic that the geometry is built on.
+
+mod double_double;
+mod float;
+
+pub(crate) use double_double::DoubleDouble;
+pub(crate) use float::{gamma, scale_by_power_of_two_near};

@@ -1,0 +1,76 @@
+//! Many rays in one call, shared out among threads in runs of neighbours.
+
+use std::mem::MaybeUninit;
+use std::sync::Mutex;
+
+use super::query::{ClosestOf, Kernel, Occlusion, Question};
+use super::{Scene, threads};
+use crate::accel::Accel;
+use crate::geometry::{Hit, PrecisionMode, Ray};
+
+impl Scene {
+    /// As [`Scene::intersect`] for each ray, on at most `thread_count` threads: 0 for all, 1 for the calling one alone.
+    /// `hits` has one place a ray; what it held is overwritten.
+    pub fn intersect_n<R, H>(&self, rays: &[R], hits: &mut [MaybeUninit<H>], thread_count: u32)
+    where
+        R: Copy + Into<Ray> + Sync,
+        H: From<Hit> + Send,
+    {
+        self.dispatch(Batch { question: ClosestOf, rays, answers: hits, thread_count });
+    }
+
+    /// As [`Scene::occluded`] for each ray; see [`Scene::intersect_n`].
+    pub fn occluded_n<R, O>(&self, rays: &[R], occluded: &mut [MaybeUninit<O>], thread_count: u32)
+    where
+        R: Copy + Into<Ray> + Sync,
+        O: From<bool> + Send,
+    {
+        self.dispatch(Batch { question: Occlusion, rays, answers: occluded, thread_count });
+    }
+}
+
+struct Batch<'a, Q, R, T> {
+    question: Q,
+    rays: &'a [R],
+    answers: &'a mut [MaybeUninit<T>],
+    thread_count: u32,
+}
+
+impl<Q, R, T> Kernel for Batch<'_, Q, R, T>
+where
+    Q: Question,
+    R: Copy + Into<Ray> + Sync,
+    T: From<Q::Answer> + Send,
+{
+    type Output = ();
+
+    fn run<A: Accel + Sync, P: PrecisionMode>(self, accel: &A) {
+        /// Enough rays that taking the next run does not show, few enough that threads end together.
+        const RUN: usize = 256;
+
+        let trace = |rays: &[R], answers: &mut [MaybeUninit<T>]| {
+            for (&ray, answer) in rays.iter().zip(answers) {
+                answer.write(self.question.answer::<A, P>(accel, &ray.into()).into());
+            }
+        };
+        let run_count = self.rays.len().div_ceil(RUN);
+        let pool = if self.thread_count == 1 || run_count <= 1 { None } else { threads::shared_pool() };
+        let Some(pool) = pool else { return trace(self.rays, self.answers) };
+
+        let worker_count = match self.thread_count {
+            0 => pool.current_num_threads(),
+            count => pool.current_num_threads().min(count as usize),
+        };
+        let runs = Mutex::new(self.rays.chunks(RUN).zip(self.answers.chunks_mut(RUN)));
+        let next_run = || runs.lock().expect("taking a run does not panic").next();
+        pool.scope(|scope| {
+            for _ in 0..worker_count {
+                scope.spawn(|_| {
+                    while let Some((rays, answers)) = next_run() {
+                        trace(rays, answers);
+                    }
+                });
+            }
+        });
+    }
+}

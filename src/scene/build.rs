@@ -1,0 +1,61 @@
+//! Building a scene: options checked, triangles gathered, one structure built.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::builder::Geometry;
+use super::flatten::{Flat, flatten};
+use super::{BuildError, BuildOptions, Scene, threads};
+use crate::accel::{self, BuildContext, Precision, Stats, Watch};
+use crate::simd::Isa;
+
+pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
+    let precision = (options.precision == Precision::Exact).then_some("GNOMON_PRECISION_EXACT");
+    if let Some(what) = accel::unsupported(options.structure, options.quality).or(precision) {
+        return Err(BuildError::Unsupported(what));
+    }
+    let own_pool;
+    let pool = match options.thread_count {
+        0 => threads::shared_pool(),
+        1 => None,
+        count => {
+            own_pool = threads::new_pool(count)?;
+            Some(&own_pool)
+        }
+    };
+    let limit = usize::try_from(options.memory_limit_bytes).ok().filter(|&limit| limit != 0);
+    let context = BuildContext::new(pool, limit, watch);
+    context.install(|| build_with(geometries, options, &context))
+}
+
+fn build_with(
+    geometries: &[Arc<Geometry>],
+    options: &BuildOptions,
+    context: &BuildContext,
+) -> Result<Scene, BuildError> {
+    let start = Instant::now();
+    let Flat { triangles, bounds, skipped_count } = flatten(geometries, options.invalid_triangles, context)?;
+    let added_count: usize = geometries.iter().map(|geometry| geometry.triangles.len()).sum();
+    let reference_count = triangles.len();
+    let structure = accel::choose(options.structure, reference_count);
+    let accel = accel::build(structure, options.quality, triangles, bounds, context)?;
+    let shape = accel.shape();
+    let stats = Stats {
+        triangle_count: (added_count - skipped_count) as u64,
+        node_count: shape.node_count as u64,
+        leaf_count: shape.leaf_count as u64,
+        reference_count: reference_count as u64,
+        skipped_count: skipped_count as u64,
+        depth: shape.depth,
+        structure,
+        precision: options.precision,
+        isa: Isa::Scalar,
+        bytes: (shape.node_bytes + shape.leaf_bytes + size_of::<Scene>()) as u64,
+        node_bytes: shape.node_bytes as u64,
+        leaf_bytes: shape.leaf_bytes as u64,
+        peak_build_bytes: context.peak_bytes() as u64,
+        build_seconds: start.elapsed().as_secs_f64(),
+        sah_cost: shape.sah_cost,
+    };
+    Ok(Scene { accel, precision: options.precision, bounds, stats })
+}

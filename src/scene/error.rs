@@ -1,0 +1,59 @@
+//! Why there is no scene.
+
+use thiserror::Error;
+
+use crate::accel::BuildFailure;
+
+/// Each variant says the cause, its fields the values; its text is one sentence.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the texts say it, and the fields are named in them")]
+pub enum BuildError {
+    #[error(
+        "geometry {geometry_id}, triangle {primitive_id}: index {index} is out of range, there are {vertex_count} vertices"
+    )]
+    IndexOutOfRange { geometry_id: u32, primitive_id: usize, index: u32, vertex_count: usize },
+
+    #[error("geometry {geometry_id}: {triangle_count} triangles without indices need {} vertices, there are {vertex_count}",
+            3 * *triangle_count as u128)]
+    TooFewVertices { geometry_id: u32, triangle_count: usize, vertex_count: usize },
+
+    #[error("geometry {geometry_id}: {count} {what} are more than the {limit} that an id can tell apart")]
+    TooMany { geometry_id: u32, what: &'static str, count: usize, limit: usize },
+
+    #[error("the scene has {count} {what}, more than the {limit} that an id can tell apart")]
+    TooManyInScene { what: &'static str, count: usize, limit: usize },
+
+    #[error(
+        "geometry {geometry_id}, triangle {primitive_id}: the coordinates ({}, {}, {}) of vertex {vertex} are not all finite",
+        position[0], position[1], position[2]
+    )]
+    NotFinite { geometry_id: u32, primitive_id: u32, vertex: u32, position: [f32; 3] },
+
+    #[error("{0} is not built yet")]
+    Unsupported(&'static str),
+
+    #[error("the build was cancelled by the progress callback")]
+    Cancelled,
+
+    #[error("the build would hold {needed} bytes, more than the limit of {limit}")]
+    OverMemoryLimit { needed: usize, limit: usize },
+
+    #[error("the allocation of {bytes} bytes failed")]
+    OutOfMemory { bytes: usize },
+
+    #[error("the threads of the build could not be started: {0}")]
+    Threads(String),
+
+    #[error("the build stopped by a bug in the library: {0}")]
+    Internal(String),
+}
+
+impl From<BuildFailure> for BuildError {
+    fn from(failure: BuildFailure) -> Self {
+        match failure {
+            BuildFailure::Cancelled => Self::Cancelled,
+            BuildFailure::OverLimit { needed, limit } => Self::OverMemoryLimit { needed, limit },
+            BuildFailure::OutOfMemory { bytes } => Self::OutOfMemory { bytes },
+        }
+    }
+}

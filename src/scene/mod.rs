@@ -1,0 +1,38 @@
+//! From a caller's meshes to an immutable scene that answers queries.
+
+mod batch;
+mod build;
+mod builder;
+mod error;
+mod flatten;
+mod options;
+mod query;
+mod threads;
+mod watched_build;
+
+pub use builder::SceneBuilder;
+pub use error::BuildError;
+pub use options::{BuildOptions, InvalidTriangles};
+
+use crate::accel::{AnyAccel, Precision, Stats};
+use crate::geometry::Aabb;
+
+/// An immutable scene; any number of threads may query it.
+pub struct Scene {
+    accel: AnyAccel,
+    precision: Precision,
+    bounds: Aabb,
+    stats: Stats,
+}
+
+impl Scene {
+    /// The box of all triangles that are not skipped, those of zero area among them; [`Aabb::EMPTY`] without any.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// What the build made.
+    pub fn stats(&self) -> &Stats {
+        &self.stats
+    }
+}

@@ -1,0 +1,33 @@
+//! What a caller may choose about a build.
+
+use crate::accel::{Precision, Quality, Structure};
+use crate::simd::Isa;
+
+/// What happens to a triangle with a coordinate that is not finite.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InvalidTriangles {
+    /// The build fails and names the first one.
+    #[default]
+    Reject,
+    /// It is left out and counted in the stats; the others keep their ids.
+    Skip,
+}
+
+/// How to build a scene.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BuildOptions {
+    /// What to build.
+    pub structure: Structure,
+    /// How much the build may spend.
+    pub quality: Quality,
+    /// How hits are decided and computed.
+    pub precision: Precision,
+    /// The most that queries may use.
+    pub isa: Isa,
+    /// 0: all that the machine has.
+    pub thread_count: u32,
+    /// What happens to triangles that are not finite.
+    pub invalid_triangles: InvalidTriangles,
+    /// What the build may hold at a time; 0: no limit.
+    pub memory_limit_bytes: u64,
+}
