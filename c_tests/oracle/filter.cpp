@@ -42,21 +42,21 @@ Sheared shear(double a, double az, double d, double dz) {
     return {a * dz - d * az, magnitude, (f32_error + 4 * f64_roundoff * magnitude) * bound_slack};
 }
 
-struct ShearedVertex {
-    Sheared x, y;
-};
+/// X (axis 0) or Y (axis 1) of the three vertices.
+using ShearedAxis = std::array<Sheared, 3>;
 
-ShearedVertex shear(const RayFrame& ray, const Vec3f& vertex) {
-    const double az = static_cast<double>(vertex[2]) - ray.origin[2];
-    const double dz = ray.direction[2];
-    return {shear(static_cast<double>(vertex[0]) - ray.origin[0], az, ray.direction[0], dz),
-            shear(static_cast<double>(vertex[1]) - ray.origin[1], az, ray.direction[1], dz)};
+ShearedAxis shear(const RayFrame& ray, const Triangle& triangle, std::size_t axis) {
+    const auto sheared = [&](const Vec3f& vertex) {
+        return shear(static_cast<double>(vertex[axis]) - ray.origin[axis], static_cast<double>(vertex[2]) - ray.origin[2],
+                     ray.direction[axis], ray.direction[2]);
+    };
+    return {sheared(triangle[0]), sheared(triangle[1]), sheared(triangle[2])};
 }
 
 /// All three on one side of the line, in the exact and in the f32 coordinates.
-bool all_beside(const Sheared& a, const Sheared& b, const Sheared& c) {
-    return (a.value > a.band && b.value > b.band && c.value > c.band) ||
-           (a.value < -a.band && b.value < -b.band && c.value < -c.band);
+bool all_beside(const ShearedAxis& axis) {
+    return std::all_of(axis.begin(), axis.end(), [](const Sheared& s) { return s.value > s.band; }) ||
+           std::all_of(axis.begin(), axis.end(), [](const Sheared& s) { return s.value < -s.band; });
 }
 
 /// How far p*q moves when p and q move by their bands.
@@ -64,12 +64,13 @@ double product_band(const Sheared& p, const Sheared& q) {
     return p.band * std::abs(q.value) + q.band * std::abs(p.value) + p.band * q.band;
 }
 
-// p.x*q.y - p.y*q.x. Each monomial of the four floats passes three operations in either factor, the product and the difference:
-// |value - exact| <= ((1+e)^8 - 1) * (sum of products of magnitudes), and twice 8e covers the roundings of the magnitudes.
-EdgeEstimate edge(const ShearedVertex& p, const ShearedVertex& q) {
-    const double permanent = p.x.magnitude * q.y.magnitude + p.y.magnitude * q.x.magnitude;
-    return {p.x.value * q.y.value - p.y.value * q.x.value, 16 * f64_roundoff * permanent,
-            (product_band(p.x, q.y) + product_band(p.y, q.x)) * bound_slack};
+// x[p]*y[q] - y[p]*x[q]. Each monomial of the four floats passes three operations in either factor, the product and the
+// difference: |value - exact| <= ((1+e)^8 - 1) * (sum of products of magnitudes); twice 8e covers the roundings of the
+// magnitudes.
+EdgeEstimate edge(const ShearedAxis& x, const ShearedAxis& y, std::size_t p, std::size_t q) {
+    const double permanent = x[p].magnitude * y[q].magnitude + y[p].magnitude * x[q].magnitude;
+    return {x[p].value * y[q].value - y[p].value * x[q].value, 16 * f64_roundoff * permanent,
+            (product_band(x[p], y[q]) + product_band(y[p], x[q])) * bound_slack};
 }
 
 bool signs_may_agree(const std::array<EdgeEstimate, 3>& edges) {
@@ -82,11 +83,11 @@ bool signs_may_agree(const std::array<EdgeEstimate, 3>& edges) {
 }  // namespace
 
 std::optional<std::array<EdgeEstimate, 3>> estimate_edges(const RayFrame& ray, const Triangle& triangle) {
-    const ShearedVertex a = shear(ray, triangle[0]);
-    const ShearedVertex b = shear(ray, triangle[1]);
-    const ShearedVertex c = shear(ray, triangle[2]);
-    if (all_beside(a.x, b.x, c.x) || all_beside(a.y, b.y, c.y)) return std::nullopt;
-    const std::array<EdgeEstimate, 3> edges{edge(c, b), edge(a, c), edge(b, a)};
+    const ShearedAxis x = shear(ray, triangle, 0);
+    if (all_beside(x)) return std::nullopt;
+    const ShearedAxis y = shear(ray, triangle, 1);
+    if (all_beside(y)) return std::nullopt;
+    const std::array<EdgeEstimate, 3> edges{edge(x, y, 2, 1), edge(x, y, 0, 2), edge(x, y, 1, 0)};
     if (!signs_may_agree(edges)) return std::nullopt;
     return edges;
 }

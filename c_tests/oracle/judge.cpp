@@ -11,7 +11,6 @@ namespace harness {
 namespace {
 
 // accuracy.md, ACCURATE and EXACT.
-constexpr double t_ulps_promised = 0.51;
 constexpr double uv_error_promised = 0.52;  // in units of 2^-24
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -28,41 +27,23 @@ bool precedes(const Candidate& c, const GnomonHit& answer) {
 
 bool in_interval(const GnomonRay& ray, float t) { return ray.t_min <= t && t <= ray.t_max; }
 
-/// The floats that an engine within t_ulps_promised may give for an exact t.
-struct Landing {
-    float least, greatest;
-};
-
-Landing landing(const Candidate& c) {
-    const double reach = t_ulps_promised * float_spacing(mpq_class(c.t_exact));
-    const auto neighbour_or_nearest = [&](float towards) {
-        const float neighbour = std::nextafter(c.t, towards);
-        return std::abs(neighbour - c.t_exact) <= reach ? neighbour : c.t;
-    };
-    constexpr float far = std::numeric_limits<float>::infinity();
-    return {neighbour_or_nearest(-far), neighbour_or_nearest(far)};
-}
-
 /// Whether every engine within the contract takes the triangle for hit.
 bool is_certain(const Candidate& c, Contract contract) {
-    return c.exact_hit && std::isfinite(c.t_exact) && std::isfinite(c.t) && (contract == Contract::exact || !c.in_band);
+    return c.exact_hit && std::isfinite(c.t_greatest) && (contract == Contract::exact || !c.in_band);
 }
 
 bool is_possible(const Candidate& c, Contract contract) { return c.exact_hit || contract == Contract::banded; }
 
 /// Whether the float t of a certain hit lies in the interval, whichever way it was rounded.
 bool surely_counts(const GnomonRay& ray, const Candidate& c, Contract contract) {
-    if (!is_certain(c, contract)) return false;
-    const Landing at = landing(c);
-    return in_interval(ray, at.least) && in_interval(ray, at.greatest);
+    return is_certain(c, contract) && in_interval(ray, c.t_least) && in_interval(ray, c.t_greatest);
 }
 
 /// Whether a candidate that surely counts comes before the answer: nearer however both were rounded, or at the same t, which
 /// can be rounded in one way only, with the lower ids.
 bool surely_beats(const Candidate& c, const GnomonHit& answer) {
-    const Landing at = landing(c);
-    if (at.greatest < answer.t) return true;
-    return at.least == at.greatest && at.least == answer.t && precedes(c, answer);
+    if (c.t_greatest < answer.t) return true;
+    return c.t_least == c.t_greatest && c.t_least == answer.t && precedes(c, answer);
 }
 
 double t_error_ulps(const PlanePoint& exact, float t) {
@@ -81,6 +62,7 @@ bool answer_breaks_contract(const GnomonRay& ray, const GnomonHit& answer, const
                             const Candidate* reported, const Verdict& verdict, Contract contract) {
     if (is_hit(answer)) {
         if (reported == nullptr || !is_possible(*reported, contract) || !in_interval(ray, answer.t)) return true;
+        if (!(reported->t_least <= answer.t && answer.t <= reported->t_greatest)) return true;
         if (verdict.t_ulps > t_ulps_promised || verdict.uv_error > uv_error_promised) return true;
     }
     return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
@@ -94,11 +76,7 @@ bool occlusion_breaks_contract(const GnomonRay& ray, bool answer, const std::vec
                            [&](const Candidate& c) { return surely_counts(ray, c, contract); });
     }
     return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
-        if (!is_possible(c, contract)) return false;
-        // The t of a triangle beside the ray is not known better than the interval.
-        if (!c.exact_hit) return ray.t_min <= ray.t_max;
-        const Landing at = landing(c);
-        return in_interval(ray, at.least) || in_interval(ray, at.greatest);
+        return is_possible(c, contract) && std::max(c.t_least, ray.t_min) <= std::min(c.t_greatest, ray.t_max);
     });
 }
 

@@ -10,6 +10,9 @@
 
 namespace harness {
 
+/// How far t may be off at most, in ulps: accuracy.md, ACCURATE and EXACT.
+constexpr double t_ulps_promised = 0.51;
+
 /// Whether a candidate is a true hit in the closed interval of the ray.
 bool counts(const GnomonRay& ray, const Candidate& candidate);
 

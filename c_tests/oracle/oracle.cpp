@@ -1,6 +1,7 @@
 #include "oracle/oracle.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -25,6 +26,28 @@ bool signs_are_known(const std::array<EdgeEstimate, 3>& edges) {
     return std::all_of(edges.begin(), edges.end(), [](const EdgeEstimate& edge) { return edge.sign_is_known(); });
 }
 
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+void allow_rounding(Candidate& candidate) {
+    const double reach = t_ulps_promised * float_spacing(candidate.t_exact);
+    const auto neighbour_or_nearest = [&](float towards) {
+        const float neighbour = std::nextafter(candidate.t, towards);
+        return std::abs(neighbour - candidate.t_exact) <= reach ? neighbour : candidate.t;
+    };
+    candidate.t_least = neighbour_or_nearest(-infinity);
+    candidate.t_greatest = neighbour_or_nearest(infinity);
+}
+
+void allow_depths(Candidate& candidate, const RayFrame& frame, const Triangle& triangle) {
+    const auto t_of = [&](const Vec3f& vertex) {
+        return static_cast<float>((static_cast<double>(vertex[2]) - frame.origin[2]) / frame.direction[2]);
+    };
+    const auto [least, greatest] = std::minmax({t_of(triangle[0]), t_of(triangle[1]), t_of(triangle[2])});
+    // Two roundings in double and one in float, or the library's: one float to either side.
+    candidate.t_least = std::nextafter(least, -infinity);
+    candidate.t_greatest = std::nextafter(greatest, infinity);
+}
+
 /// Nothing for a triangle that neither exact arithmetic nor f32 could take for hit.
 std::optional<Candidate> classify(const RayFrame& frame, const Line& line, const StoredTriangle& stored) {
     const Triangle triangle = frame.rename(stored.vertices);
@@ -38,15 +61,15 @@ std::optional<Candidate> classify(const RayFrame& frame, const Line& line, const
     if (!exact_hit && (has_zero_area(triangle) || !line.may_meet_triangle(box_of(stored.vertices)))) return std::nullopt;
 
     const bool in_band = std::any_of(edges->begin(), edges->end(), [](const EdgeEstimate& edge) { return edge.in_band(); });
-    Candidate candidate{stored.geometry_id,
-                        stored.primitive_id,
-                        exact_hit,
-                        in_band,
-                        std::numeric_limits<float>::infinity(),
-                        std::numeric_limits<double>::infinity()};
+    Candidate candidate{stored.geometry_id, stored.primitive_id, exact_hit, in_band, infinity, infinity, -infinity, infinity};
     if (const auto t = pair.plane_t()) {
         candidate.t = nearest_float(*t);
         candidate.t_exact = nearest_double(*t);
+    }
+    if (exact_hit) {
+        allow_rounding(candidate);
+    } else {
+        allow_depths(candidate, frame, triangle);
     }
     return candidate;
 }

@@ -18,6 +18,8 @@ struct Candidate {
     float t;         // the exact t (a rational), rounded once to the nearest float; of the triangle's plane where it is no
                      // exact hit, +inf where the plane is parallel to the ray
     double t_exact;  // the same rational, rounded to double
+    float t_least, t_greatest;  // which floats the contract allows for t: those within 0.51 ulp of an exact hit's; else all
+                                // from the nearest to the farthest vertex, along the axis of the largest |direction|
 };
 
 /// What an engine did on one ray, against the truth. All raw judgements use the exact t rounded once, against a closed [t_min,

@@ -234,7 +234,8 @@ void replace_number(nlohmann::json& root, Rng& rng) {
                                                   2147483647, 2147483648, 4294967295, 4294967296, UINT64_MAX, 0.5,  1e39,
                                                   -1e39,      1e-320,     nullptr,    "x",        {}};
     std::vector<std::string> numbers;  // JSON pointers
-    for (const auto& [pointer, value] : root.flatten().items())
+    const nlohmann::json flat = root.flatten();
+    for (const auto& [pointer, value] : flat.items())
         if (value.is_number()) numbers.push_back(pointer);
     if (numbers.empty()) return;
     root[nlohmann::json::json_pointer(numbers[rng.below(numbers.size())])] = replacements[rng.below(std::size(replacements))];

@@ -94,11 +94,11 @@ impl SlabRay {
     #[inline(always)]
     pub(crate) fn enter(&self, planes: &[[f32; 2]; 3], t_min: f32, t_max: f32) -> Option<f32> {
         let (mut enter, mut leave) = (t_min, t_max);
-        for axis in 0..3 {
-            // The masks tell the compiler that the indices are in range.
+        for (axis, pair) in planes.iter().enumerate() {
+            // The masks tell the compiler that the index is in range.
             let side = self.near_side[axis] & 1;
-            let near = (planes[axis][side] - self.origin[axis]) * self.inverse[axis] - self.slack[axis];
-            let far = (planes[axis][side ^ 1] - self.origin[axis]) * self.inverse[axis] + self.slack[axis];
+            let near = (pair[side] - self.origin[axis]) * self.inverse[axis] - self.slack[axis];
+            let far = (pair[side ^ 1] - self.origin[axis]) * self.inverse[axis] + self.slack[axis];
             enter = if near > enter { near } else { enter };
             leave = if far < leave { far } else { leave };
         }

@@ -1,0 +1,172 @@
+//! Meshes and rays that are hard on purpose, all seeded.
+
+use gnomon::{IndexBytes, IndexView, PositionView, Ray, SceneBuilder, TriangleView};
+use glam::Vec3;
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+pub(crate) struct Rng(u64);
+
+impl Rng {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub(crate) fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// In `[-1, 1)`.
+    pub(crate) fn signed(&mut self) -> f32 {
+        (self.next() >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+    }
+
+    pub(crate) fn point(&mut self) -> Vec3 {
+        Vec3::new(self.signed(), self.signed(), self.signed())
+    }
+
+    pub(crate) fn below(&mut self, bound: usize) -> usize {
+        (self.next() % bound as u64) as usize
+    }
+}
+
+pub(crate) struct Mesh {
+    pub(crate) name: &'static str,
+    pub(crate) vertices: Vec<Vec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    pub(crate) fn add_to(&self, builder: &mut SceneBuilder) {
+        let positions: Vec<u8> = self.vertices.iter().flat_map(|v| v.to_array()).flat_map(f32::to_ne_bytes).collect();
+        let indices: Vec<u8> = self.triangles.iter().flatten().flat_map(|index| index.to_ne_bytes()).collect();
+        let view = TriangleView {
+            positions: PositionView::new(&positions, 12, self.vertices.len()).expect("packed"),
+            indices: IndexView::U32(IndexBytes::new(&indices, 12, self.triangles.len()).expect("packed")),
+        };
+        builder.add_triangles(&view).expect("the indices are in range");
+    }
+
+    fn from_soup(name: &'static str, corners: Vec<Vec3>) -> Self {
+        let triangles = (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        Self { name, vertices: corners, triangles }
+    }
+
+    fn mapped(mut self, name: &'static str, map: impl Fn(Vec3) -> Vec3) -> Self {
+        self.name = name;
+        self.vertices.iter_mut().for_each(|v| *v = map(*v));
+        self
+    }
+}
+
+fn soup(rng: &mut Rng, count: usize, size: f32) -> Mesh {
+    let corners = (0..count)
+        .flat_map(|_| {
+            let centre = rng.point();
+            [0; 3].map(|_| centre + size * rng.point())
+        })
+        .collect();
+    Mesh::from_soup("soup", corners)
+}
+
+/// Long and thin: width `width`, length about 1.
+fn needles(rng: &mut Rng, count: usize, width: f32) -> Mesh {
+    let corners = (0..count)
+        .flat_map(|_| {
+            let a = rng.point();
+            let b = a + rng.point();
+            [a, b, a + width * rng.point()]
+        })
+        .collect();
+    Mesh::from_soup("needles", corners)
+}
+
+/// A height field of small integers over an integer grid: edges on axis-parallel lines, many equal coordinates.
+fn height_field(rng: &mut Rng, side: u32) -> Mesh {
+    let vertices = (0..=side)
+        .flat_map(|y| (0..=side).map(move |x| (x, y)))
+        .map(|(x, y)| Vec3::new(x as f32, y as f32, rng.below(3) as f32))
+        .collect();
+    let row = side + 1;
+    let triangles = (0..side)
+        .flat_map(|y| (0..side).map(move |x| y * row + x))
+        .flat_map(|at| [[at, at + 1, at + row], [at + 1, at + row + 1, at + row]])
+        .collect();
+    Mesh { name: "height field", vertices, triangles }
+}
+
+/// The same few triangles many times, and some in one plane: ties everywhere.
+fn duplicates(rng: &mut Rng) -> Mesh {
+    let few = soup(rng, 12, 0.8);
+    let flat = height_field(rng, 6).mapped("flat", |v| Vec3::new(v.x / 3.0 - 1.0, v.y / 3.0 - 1.0, 0.25));
+    let mut mesh = Mesh { name: "duplicates", vertices: few.vertices, triangles: Vec::new() };
+    for _ in 0..20 {
+        mesh.triangles.extend_from_slice(&few.triangles);
+    }
+    let offset = mesh.vertices.len() as u32;
+    mesh.vertices.extend(flat.vertices);
+    mesh.triangles.extend(flat.triangles.iter().chain(&flat.triangles).map(|t| t.map(|index| index + offset)));
+    mesh
+}
+
+pub(crate) fn meshes() -> Vec<Mesh> {
+    let mut rng = Rng::new(1);
+    vec![
+        soup(&mut rng, 800, 0.1),
+        soup(&mut rng, 3, 0.8).mapped("three triangles", |v| v),
+        needles(&mut rng, 400, 1e-3),
+        needles(&mut rng, 400, 1e-6).mapped("thin needles", |v| v),
+        height_field(&mut rng, 20),
+        duplicates(&mut rng),
+        soup(&mut rng, 400, 0.2).mapped("far away", |v| v + Vec3::new(148_376.0, 1234.0, -223_423.0)),
+        soup(&mut rng, 400, 0.2).mapped("tiny", |v| v * 1e-30),
+        soup(&mut rng, 400, 0.2).mapped("huge", |v| v * 1e30),
+        soup(&mut rng, 400, 0.2).mapped("denormal", |v| v * 1e-41),
+        soup(&mut rng, 400, 0.5).mapped("in a plane", |v| Vec3::new(v.x, 0.5, v.z)),
+    ]
+}
+
+/// Rays at random, at vertices, edges and insides, along axes, in planes, from far away, with long and short directions.
+pub(crate) fn rays_for(mesh: &Mesh, rng: &mut Rng) -> Vec<Ray> {
+    let lower = mesh.vertices.iter().copied().reduce(Vec3::min).expect("a mesh has vertices");
+    let upper = mesh.vertices.iter().copied().reduce(Vec3::max).expect("a mesh has vertices");
+    let (centre, half) = (lower * 0.5 + upper * 0.5, upper * 0.5 - lower * 0.5);
+    let scale = half.max_element();
+    let mut rays = Vec::new();
+    for round in 0..1200 {
+        let corners = mesh.triangles[rng.below(mesh.triangles.len())].map(|index| mesh.vertices[index as usize]);
+        let (a, b) = (rng.signed().abs(), rng.signed().abs());
+        let on_edge = corners[0] + (corners[1] - corners[0]) * a;
+        let target = match round % 6 {
+            0 => corners[rng.below(3)],
+            1 => on_edge,
+            2 => on_edge + (corners[2] - on_edge) * b,
+            3 => (corners[0] + corners[1]) * 0.5,
+            4 => centre + half * rng.point(),
+            _ => corners[0] + (corners[1] - corners[0]) * a * 1.0001,
+        };
+        let distance = [1.5, 1e-4, 1e3, 1e5][(round / 6) % 4];
+        let origin = match (round / 24) % 5 {
+            // Along an axis, exactly at the target's other coordinates.
+            0 => {
+                let mut origin = target;
+                origin[rng.below(3)] += scale * distance;
+                origin
+            }
+            // In a plane through the target.
+            1 => target + scale * distance * Vec3::new(rng.signed(), 0.0, rng.signed()),
+            // At a vertex of the same triangle: along an edge, or in the triangle's plane.
+            2 => corners[rng.below(3)],
+            _ => target + scale * distance * rng.point(),
+        };
+        let length = [1.0, 1e-3, 1e12, 1e-25][(round / 5) % 4] / scale.max(1e-12);
+        let direction = (target - origin) * length;
+        let (t_min, t_max) = [(0.0, f32::INFINITY), (f32::NEG_INFINITY, f32::INFINITY), (0.0, 1.0 / length)][round % 3];
+        rays.push(Ray { origin, t_min, direction, t_max });
+        // The opposite signs of zero.
+        rays.push(Ray { origin, t_min, direction: direction * -1.0, t_max });
+    }
+    rays
+}
