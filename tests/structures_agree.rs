@@ -32,7 +32,8 @@ fn bits(hit: &Hit) -> [u32; 9] {
 
 fn hexadecimal(ray: &Ray) -> String {
     let words = [ray.origin.to_array(), ray.direction.to_array()].concat();
-    let words: Vec<String> = words.iter().chain([&ray.t_min, &ray.t_max]).map(|f| format!("{:08x}", f.to_bits())).collect();
+    let words: Vec<String> =
+        words.iter().chain([&ray.t_min, &ray.t_max]).map(|f| format!("{:08x}", f.to_bits())).collect();
     format!("origin, direction, t_min, t_max as bits: {}", words.join(" "))
 }
 
@@ -55,7 +56,8 @@ fn every_structure_gives_the_hits_of_brute_force() {
             for quality in [Quality::Low, Quality::Medium] {
                 let scene = build(&mesh, Structure::Bvh, quality, precision, 0);
                 let single: Vec<Hit> = rays.iter().map(|ray| scene.intersect(ray)).collect();
-                let forms = [("single", single), ("batch 1", batch(&scene, &rays, 1)), ("batch 2", batch(&scene, &rays, 2))];
+                let forms =
+                    [("single", single), ("batch 1", batch(&scene, &rays, 1)), ("batch 2", batch(&scene, &rays, 2))];
                 for (form, hits) in forms {
                     for ((ray, hit), expected) in rays.iter().zip(&hits).zip(&expected) {
                         assert_eq!(

@@ -123,7 +123,7 @@ TEST_CASE("progress_rises_from_0_to_1") {
 }
 
 TEST_CASE("progress_cancels_at_any_report_is_told_no_more_and_the_builder_stays_usable") {
-    const BuilderHandle builder = builder_of(flat_grid(400));
+    const BuilderHandle builder = builder_of(flat_grid(200));
     for (const double cancel_at : {0.0, 0.25, 1.0}) {
         CAPTURE(cancel_at);
         ProgressLog log;

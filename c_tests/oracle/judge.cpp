@@ -76,7 +76,7 @@ bool occlusion_breaks_contract(const GnomonRay& ray, bool answer, const std::vec
                            [&](const Candidate& c) { return surely_counts(ray, c, contract); });
     }
     return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
-        return is_possible(c, contract) && std::max(c.t_least, ray.t_min) <= std::min(c.t_greatest, ray.t_max);
+        return is_possible(c, contract) && ray.t_min <= ray.t_max && ray.t_min <= c.t_greatest && c.t_least <= ray.t_max;
     });
 }
 

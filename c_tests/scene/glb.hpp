@@ -13,7 +13,8 @@ struct GlbChunks {
     std::string binary;  // empty where the file has none
 };
 
-/// Throws SceneError. Chunks of unknown type are passed over, as the specification asks.
+/// Not left to tinygltf 2.7, which takes a BIN chunk that ends eight bytes behind the file. Throws SceneError. Chunks of unknown
+/// type are passed over, as the specification asks.
 GlbChunks split_glb(std::string_view file);
 
 /// Pads both chunks to four bytes. Throws SceneError beyond the format's 4 GiB.

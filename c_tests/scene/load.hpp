@@ -17,8 +17,8 @@ struct SceneError : std::runtime_error {
 /// `spec` is a path to a .glb or .gltf file, or `gen:NAME[:TRIANGLES]`. Throws SceneError.
 Scene load_scene(const std::string& spec);
 
-/// Every .glb and .gltf of the default scene: the triangles of all nodes of the default scene, node transforms applied in double
-/// and rounded once. Throws SceneError.
+/// The default scene of a glTF file: each triangle primitive of each node instance becomes a mesh, transformed in double and
+/// rounded once. Coordinates that are not finite are passed on. Throws SceneError, for all that is wrong with the file.
 Scene load_gltf(const std::string& path);
 
 /// A generated scene with about `triangle_count` triangles (0: the generator's own default). Throws SceneError that lists the

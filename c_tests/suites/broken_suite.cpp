@@ -5,14 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
 
 #include "api/handles.hpp"
-#include "harness/rng.hpp"
 #include "suites/gltf_maker.hpp"
+#include "suites/mutate_glb.hpp"
 
 using namespace harness;
 
@@ -195,7 +196,7 @@ std::string read_file(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// "loads" or a refusal; fails the test when a refusal is not clear or what loads is not sound.
+/// Whether it loads; fails the test when a refusal is not clear or what loads is not sound.
 bool loads_soundly(const std::string& path) {
     try {
         const Scene scene = load_gltf(path);
@@ -220,55 +221,6 @@ GltfMaker rich_file() {
                            {{"mesh", 0}},
                            {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}}}};
     return maker;
-}
-
-/// One to eight bytes of file[from..] changed.
-void flip_bytes(std::string& file, std::size_t from, std::size_t to, Rng& rng) {
-    for (std::uint64_t i = 0, count = 1 + rng.below(8); i < count; ++i)
-        file[from + rng.below(to - from)] ^= char(1 + rng.below(255));
-}
-
-/// One number of the JSON replaced by one that is negative, large, fractional, or no number.
-void replace_number(nlohmann::json& root, Rng& rng) {
-    static const nlohmann::json replacements[] = {-1,         0,          1,          3,          255,        5123, 5126,
-                                                  2147483647, 2147483648, 4294967295, 4294967296, UINT64_MAX, 0.5,  1e39,
-                                                  -1e39,      1e-320,     nullptr,    "x",        {}};
-    std::vector<std::string> numbers;  // JSON pointers
-    const nlohmann::json flat = root.flatten();
-    for (const auto& [pointer, value] : flat.items())
-        if (value.is_number()) numbers.push_back(pointer);
-    if (numbers.empty()) return;
-    root[nlohmann::json::json_pointer(numbers[rng.below(numbers.size())])] = replacements[rng.below(std::size(replacements))];
-}
-
-/// One to three numbers of the file's JSON replaced.
-std::string replace_numbers(const GlbChunks& chunks, Rng& rng) {
-    nlohmann::json root = nlohmann::json::parse(chunks.json);
-    for (std::uint64_t i = 0, count = 1 + rng.below(3); i < count; ++i) replace_number(root, rng);
-    return join_glb({root.dump(), chunks.binary});
-}
-
-std::string mutate(const std::string& glb, std::uint64_t seed) {
-    constexpr std::size_t json_begin = 20;
-    Rng rng(seed);
-    std::string file = glb;
-    const GlbChunks chunks = split_glb(glb);
-    switch (seed % 5) {
-        case 0:
-            flip_bytes(file, 0, file.size(), rng);
-            return file;
-        case 1:
-            flip_bytes(file, json_begin, json_begin + chunks.json.size(), rng);
-            return file;
-        case 2:
-            flip_bytes(file, 0, json_begin, rng);
-            return file;
-        case 3:
-            file.resize(rng.below(file.size()));
-            return file;
-        default:
-            return replace_numbers(chunks, rng);
-    }
 }
 
 /// The most memory that this process has held, in bytes.
@@ -399,6 +351,17 @@ TEST_CASE("references, ranges and types are refused by name") {
     CHECK(file.error() == expected);
 }
 
+TEST_CASE("a chunk that passes the end of its file is refused") {
+    // The header agrees with the file; the BIN chunk claims four bytes more.
+    std::string file = square_file().glb();
+    file.resize(file.size() - 4);
+    const auto length = std::uint32_t(file.size());
+    std::memcpy(&file[8], &length, sizeof length);
+    const TempFolder folder;
+    CHECK_THROWS_WITH_AS(load_gltf(folder.write("short.glb", file)),
+                         doctest::Contains("truncated: a chunk of 60 bytes, of which only 56 are there"), SceneError);
+}
+
 TEST_CASE("transforms that are no affine maps are refused by node") {
     GltfMaker file = square_file();
     std::string expected;
@@ -493,7 +456,7 @@ TEST_CASE("mutated files load or are refused") {
         REQUIRE(loads_soundly(folder.write("base.glb", base)));
         for (std::uint64_t seed = 0; seed < 2'000; ++seed) {
             CAPTURE(seed);
-            const std::string path = folder.write("mutated.glb", mutate(base, seed));
+            const std::string path = folder.write("mutated.glb", mutate_glb(base, seed));
             ++(loads_soundly(path) ? loaded_count : refused_count);
         }
     }

@@ -18,7 +18,7 @@ namespace {
 
 using namespace harness;
 
-constexpr std::size_t triangle_count = 5'000, ray_count = 20'000;
+constexpr std::size_t triangle_count = 2'000, ray_count = 5'000;
 constexpr std::uint32_t threads = 1;
 
 std::unique_ptr<Backend> make_accurate(const Scene& scene) {
@@ -109,6 +109,9 @@ void compare_engines(bool robust) {
         return;
     }
     for (const GeneratorInfo& generator : generators()) {
+        // Every hit of coinciding triangles is a tie, which Embree breaks as it likes: nothing to learn, at the price of a
+        // judgement a ray.
+        if (generator.name == "identical") continue;
         CAPTURE(generator.name);
         const Scene scene = generate_scene(generator.name, triangle_count);
         const Oracle oracle(scene);

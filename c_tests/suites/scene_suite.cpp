@@ -273,7 +273,7 @@ TEST_CASE("interleaved positions are read with their stride") {
 
 TEST_CASE("odd offsets are read like even ones") {
     GltfMaker file;
-    file.binary = "?";
+    file.binary.push_back('?');
     file.set_positions(square);
     file.primitive()["indices"] =
         file.add_accessor(file.add_view(std::vector<char>{'?', 2, 0, 1, 0, 0, 0}), u16_type, 3, "SCALAR");

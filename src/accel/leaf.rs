@@ -1,6 +1,6 @@
 //! The one routine by which every structure tests its triangles, and the order in which hits win.
 
-use crate::geometry::{INVALID_ID, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
+use crate::geometry::{INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
 
 /// What a query wants, chosen at compile time.
 pub(crate) trait Query {
@@ -61,8 +61,9 @@ pub(crate) fn test_triangles<Q: Query, P: PrecisionMode>(
     best: &mut ClosestHit,
 ) -> bool {
     for (index, triangle) in (first_index..).zip(triangles) {
-        let Some(hit) = ray.hit::<P>(triangle) else { continue };
-        if hit.t >= t_min && best.is_beaten_by(&hit, triangle) {
+        let interval = Interval { t_min, t_max: best.t };
+        let Some(hit) = ray.hit::<P>(triangle, interval) else { continue };
+        if best.is_beaten_by(&hit, triangle) {
             *best = ClosestHit {
                 t: hit.t,
                 u: hit.u,

@@ -11,4 +11,4 @@ pub(crate) use aabb::SlabRay;
 pub use mesh_view::{IndexBytes, IndexView, PositionView, TriangleView, span_bytes};
 pub use ray::{Hit, INVALID_ID, Ray};
 pub(crate) use triangle::Triangle;
-pub(crate) use triangle_hit::{Accurate, Fast, PrecisionMode, TriangleHit, TriangleRay};
+pub(crate) use triangle_hit::{Accurate, Fast, Interval, PrecisionMode, TriangleHit, TriangleRay};

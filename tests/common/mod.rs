@@ -1,7 +1,7 @@
 //! Meshes and rays that are hard on purpose, all seeded.
 
-use gnomon::{IndexBytes, IndexView, PositionView, Ray, SceneBuilder, TriangleView};
 use glam::Vec3;
+use gnomon::{IndexBytes, IndexView, PositionView, Ray, SceneBuilder, TriangleView};
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
 pub(crate) struct Rng(u64);
