@@ -1,6 +1,7 @@
 //! Rays, boxes and triangles, and the scalar definition of every test between them.
 
 mod aabb;
+mod evaluation;
 mod mesh_view;
 mod ray;
 mod triangle;
