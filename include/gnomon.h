@@ -2,9 +2,9 @@
 //
 // Conventions
 //   Coordinates are floats in any one unit and handedness. A ray is origin + t * direction for t in the closed
-//   interval [t_min, t_max]; t counts in lengths of the direction. A triangle is closed, and both its sides are hit.
-//   Of two hits with the same t the one with the lower (geometry_id, primitive_id) wins, in every structure and call.
-//   A triangle of zero area is valid and never hit.
+//   interval [t_min, t_max]; t counts in lengths of the direction. A triangle is closed, and both its sides are
+//   hit. Of two hits with the same t the one with the lower (geometry_id, primitive_id) wins, in every structure
+//   and call. A triangle of zero area is valid and never hit.
 //
 // A scene in five calls
 //   GnomonSceneBuilder *builder = gnomon_scene_builder_new();
@@ -14,19 +14,20 @@
 //   if (gnomon_intersect(scene, &ray, &hit)) ...
 //
 // Errors
-//   Functions that can fail return a GnomonStatus; gnomon_last_error() gives the calling thread's last failure as one
-//   sentence. Outputs are written only on success. Numbers for structures, precisions and the like enter as uint32_t: an unknown
-//   one is GNOMON_ERROR_INVALID_ARGUMENT. No panic and no exception of the library's own leaves it.
+//   Functions that can fail return a GnomonStatus; gnomon_last_error() gives the calling thread's last failure as
+//   one sentence. Outputs are written only on success. Numbers for structures, precisions and the like enter as
+//   uint32_t: an unknown one is GNOMON_ERROR_INVALID_ARGUMENT. No panic of the library's own leaves it.
 //
 // Threads
 //   A builder belongs to one thread at a time. A scene is immutable: any number of threads may query it.
 //
 // Accuracy (u = 2^-24)
 //   No ray slips through a shared edge or vertex of a mesh, in any precision.
-//   FAST and ACCURATE decide in float: where a ray passes an edge at less than the rounding of its coordinates, a few u of the
-//   distance, they may take the neighbour across it. ACCURATE gives t within 0.51 ulp, and u and v within 0.52 u, of
-//   the exact values. Answers are right for coordinates up to 1e38 in magnitude, with gradual underflow switched on (the
-//   default of every CPU; some hosts set FTZ or DAZ). The library never changes the floating-point environment.
+//   FAST and ACCURATE decide in float: where a ray passes an edge at less than the rounding of its coordinates, a
+//   few u of the distance, they may take the neighbour across it. ACCURATE gives t within 0.51 ulp, and u and v
+//   within 0.52 u, of the exact values. Coordinates may be as large as 1e38 and as small as they come. Gradual
+//   underflow is expected to be on, as it is unless a host sets FTZ or DAZ; the library never changes the
+//   floating-point environment.
 
 #ifndef GNOMON_H
 #define GNOMON_H
@@ -134,10 +135,11 @@ typedef struct GnomonScene GnomonScene;
 // Collects meshes; belongs to one thread at a time.
 typedef struct GnomonSceneBuilder GnomonSceneBuilder;
 
-// Told the share of a build that is done, in [0, 1] and never falling, and `progress_user`. Returning false cancels the build.
+// Told the share of a build that is done, in [0, 1] and never falling, and `progress_user`. Returning false cancels
+// the build.
 //
-// Called on the thread that called `gnomon_scene_build`, at 0, about every 10 ms, and at 1. It may throw a C++ exception: the
-// build is cancelled, and the exception passes through `gnomon_scene_build`.
+// Called on the thread that called `gnomon_scene_build`, at 0, about every 10 ms, and at 1. It may throw a C++
+// exception: the build is cancelled, and the exception passes through `gnomon_scene_build`.
 typedef bool (*GnomonProgress)(void *user, double done);
 
 // How to build a scene. Fill it with `gnomon_build_options_init`, then change what you like.
@@ -150,14 +152,15 @@ typedef struct GnomonBuildOptions {
     uint32_t quality;
     // `GNOMON_PRECISION_*`; by default `_ACCURATE`.
     uint32_t precision;
-    // `GNOMON_ISA_*`, the most that queries may use, so that one machine can test every path; by default `_AUTO`. The answers do not depend on it.
+    // `GNOMON_ISA_*`, the most that queries may use, so that one machine can test every path; by default `_AUTO`.
+    // The answers do not depend on it.
     uint32_t isa;
     // Threads of the build; 0, the default: as many as the machine has. The scene does not depend on it.
     uint32_t thread_count;
     // `GNOMON_INVALID_*`; by default `_REJECT`.
     uint32_t invalid_triangles;
-    // What the build may hold at a time, the builder's copy of the meshes not counted; a build that would pass it fails with
-    // `GNOMON_ERROR_OUT_OF_MEMORY` before it allocates. 0, the default: no limit.
+    // What the build may hold at a time, the builder's copy of the meshes not counted; a build that would pass it
+    // fails with `GNOMON_ERROR_OUT_OF_MEMORY` before it allocates. 0, the default: no limit.
     uint64_t memory_limit_bytes;
     // NULL, the default: nobody is told.
     GnomonProgress progress;
@@ -187,7 +190,8 @@ typedef struct GnomonTriangles {
     size_t position_stride;
     // How many vertices there are.
     size_t vertex_count;
-    // Three indices at the start of each stride, each below `vertex_count`. NULL: the vertices are taken three by three.
+    // Three indices at the start of each stride, each below `vertex_count`. NULL: the vertices are taken three by
+    // three.
     const void *indices;
     // `GNOMON_INDEX_U16` or `GNOMON_INDEX_U32`; not looked at without `indices`.
     uint32_t index_format;
@@ -227,15 +231,15 @@ typedef struct GnomonSceneStats {
     uint64_t peak_build_bytes;
     // Wall-clock time of the build.
     double build_seconds;
-    // Expected cost of a random ray that meets the scene's box, in triangle tests (MacDonald and Booth 1990, "Heuristics for ray
-    // tracing using space subdivision"); NaN where it has no meaning.
+    // Expected cost of a random ray that meets the scene's box, in triangle tests (MacDonald and Booth 1990,
+    // "Heuristics for ray tracing using space subdivision"); NaN where it has no meaning.
     double sah_cost;
 } GnomonSceneStats;
 
 // `origin + t * direction` for `t` in the closed interval `[t_min, t_max]`. 32 bytes.
 //
-// A ray with a NaN, an infinite origin or direction, a zero direction, or `t_min > t_max` misses everything. `t_max` may be
-// `INFINITY`, `t_min` may be negative.
+// A ray with a NaN, an infinite origin or direction, a zero direction, or `t_min > t_max` misses everything. `t_max`
+// may be `INFINITY`, `t_min` may be negative.
 typedef struct GnomonRay {
     // Where `t` is 0, in the scene's units.
     float origin[3];
@@ -271,14 +275,15 @@ typedef struct GnomonHit {
 extern "C" {
 #endif // __cplusplus
 
-// The last failure of the calling thread as one sentence that names the culprit and its values: which geometry, which triangle,
-// which index. "" before the first one; a later success does not clear it.
+// The last failure of the calling thread as one sentence that names the culprit and its values: which geometry,
+// which triangle, which index. "" before the first one; a later success does not clear it.
 //
-// The text is UTF-8 and ends with a NUL; it belongs to the library and stays valid until the next failing call on the same
-// thread, or the thread's end. Any thread may call this.
+// The text is UTF-8 and ends with a NUL; it belongs to the library and stays valid until the next failing call on
+// the same thread, or the thread's end. Any thread may call this.
 const char *gnomon_last_error(void);
 
-// The name of a status, for example "GNOMON_ERROR_OUT_OF_MEMORY"; "GNOMON_STATUS_UNKNOWN" for a number without a meaning.
+// The name of a status, for example "GNOMON_ERROR_OUT_OF_MEMORY"; "GNOMON_STATUS_UNKNOWN" for a number without a
+// meaning.
 //
 // The text is static. Any thread may call this.
 const char *gnomon_status_name(uint32_t status);
@@ -294,12 +299,12 @@ struct GnomonSceneBuilder *gnomon_scene_builder_new(void);
 
 // Copies a mesh into the builder; the caller's arrays may go afterwards.
 //
-// `geometry_id_out` gets the mesh's id: 0 for the first, 1 for the second, and so on. It may be NULL.
-// Coordinates are not looked at before the build, which decides by `invalid_triangles` about those that are not finite.
+// `geometry_id_out` gets the mesh's id: 0 for the first, 1 for the second, and so on. It may be NULL. Coordinates
+// are not looked at before the build, which decides by `invalid_triangles` about those that are not finite.
 //
-// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown index format, a stride that is too small, counts that no
-// memory can hold, or an index out of range (the message names the geometry, the triangle, the index, and how many vertices there
-// are); `GNOMON_ERROR_OUT_OF_MEMORY`. On an error the builder is as it was.
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown index format, a stride that is too small,
+// counts that no memory can hold, or an index out of range (the message names the geometry, the triangle, the index,
+// and how many vertices there are); `GNOMON_ERROR_OUT_OF_MEMORY`. On an error the builder is as it was.
 GnomonStatus gnomon_scene_builder_add_triangles(struct GnomonSceneBuilder *builder,
                                                 const struct GnomonTriangles *triangles,
                                                 uint32_t *geometry_id_out);
@@ -307,14 +312,19 @@ GnomonStatus gnomon_scene_builder_add_triangles(struct GnomonSceneBuilder *build
 // Frees a builder; scenes built from it stay. NULL is fine.
 void gnomon_scene_builder_free(struct GnomonSceneBuilder *builder);
 
-// Builds a scene from all meshes of a builder; the builder stays as it is and may build again. Without any mesh the scene is empty: every ray misses.
+// Builds a scene from all meshes of a builder; the builder stays as it is and may build again. Without any mesh the
+// scene is empty: every ray misses.
 //
-// `options` may be NULL for the defaults. `scene_out` gets the scene, to be freed with `gnomon_scene_free`; it is not touched on an error.
-// Threads: see `thread_count`. Other threads may build other scenes, and query this builder's earlier ones, meanwhile.
+// `options` may be NULL for the defaults. `scene_out` gets the scene, to be freed with `gnomon_scene_free`; it is
+// not touched on an error. Threads: see `thread_count`. Other threads may build other scenes, and query this
+// builder's earlier ones, meanwhile.
 //
-// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that is not finite (unless it
-// is to be skipped; the message names the geometry, the triangle and the vertex); `GNOMON_ERROR_UNSUPPORTED`;
-// `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that
+// is not finite (unless it is to be skipped; the message names the geometry, the triangle and the vertex);
+// `GNOMON_ERROR_UNSUPPORTED`; `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
+//
+// # Safety `builder` is null or from `gnomon_scene_builder_new`, and no other thread changes it; `options` is null
+// or filled in; `scene_out` is null or writable.
 GnomonStatus gnomon_scene_build(const struct GnomonSceneBuilder *builder,
                                 const struct GnomonBuildOptions *options,
                                 struct GnomonScene **scene_out);
@@ -322,29 +332,29 @@ GnomonStatus gnomon_scene_build(const struct GnomonSceneBuilder *builder,
 // Frees a scene. NULL is fine.
 void gnomon_scene_free(struct GnomonScene *scene);
 
-// The box of all triangles that were not skipped, those of zero area among them. Without any, lower is `INFINITY` and upper
-// `-INFINITY`.
+// The box of all triangles that were not skipped, those of zero area among them. Without any, lower is `INFINITY`
+// and upper `-INFINITY`.
 //
-// `lower_out` and `upper_out` get three floats each (x, y, z), exact. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer.
-// Any thread may call this.
+// `lower_out` and `upper_out` get three floats each (x, y, z), exact. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a
+// null pointer. Any thread may call this.
 GnomonStatus gnomon_scene_bounds(const struct GnomonScene *scene,
                                  float lower_out[3],
                                  float upper_out[3]);
 
 // What a scene is made of and what its build took.
 //
-// Writes the first `stats_bytes` bytes: pass `sizeof(GnomonSceneStats)`, and a program compiled against an older header gets the fields
-// that it knows; bytes beyond those that this library knows become 0. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null
-// pointer. Any thread may call this.
+// Writes the first `stats_bytes` bytes: pass `sizeof(GnomonSceneStats)`, and a program compiled against an older
+// header gets the fields that it knows; bytes beyond those that this library knows become 0. Errors:
+// `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer. Any thread may call this.
 GnomonStatus gnomon_scene_stats(const struct GnomonScene *scene,
                                 size_t stats_bytes,
                                 struct GnomonSceneStats *stats_out);
 
 // The closest hit of a ray: true if there is one, and `hit_out` gets it; false for a miss, and `hit_out` says so.
 //
-// Accuracy: see `GNOMON_PRECISION_*`; the answer is the same on every instruction set and in every structure, and `gnomon_occluded`
-// never disagrees. Any number of threads may call this on one scene. A null pointer answers false and sets `gnomon_last_error`;
-// `hit_out` then is not touched.
+// Accuracy: see `GNOMON_PRECISION_*`; the answer is the same on every instruction set and in every structure, and
+// `gnomon_occluded` never disagrees. Any number of threads may call this on one scene. A null pointer answers false
+// and sets `gnomon_last_error`; `hit_out` then is not touched.
 bool gnomon_intersect(const struct GnomonScene *scene,
                       const struct GnomonRay *ray,
                       struct GnomonHit *hit_out);
@@ -358,11 +368,14 @@ bool gnomon_occluded(const struct GnomonScene *scene,
 
 // As `gnomon_intersect` for each of `count` rays, with the same answers to the bit, shared out among threads.
 //
-// `hits_out` gets one hit a ray, in the rays' order; the two arrays must not overlap. `options` may be NULL for the defaults.
-// `count` 0 is fine, the arrays then may be NULL.
+// `hits_out` gets one hit a ray, in the rays' order; the two arrays must not overlap. `options` may be NULL for the
+// defaults. `count` 0 is fine, the arrays then may be NULL.
 //
-// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an array that is not aligned for floats, or a count that no memory can
-// hold; nothing is written then. Any number of threads may call this on one scene.
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an array that is not aligned for floats, or a count
+// that no memory can hold; nothing is written then. Any number of threads may call this on one scene.
+//
+// # Safety `scene` is null or from `gnomon_scene_build`; `rays` and `hits_out` are null or have `count` elements;
+// `options` is null or filled in.
 GnomonStatus gnomon_intersect_n(const struct GnomonScene *scene,
                                 const struct GnomonRay *rays,
                                 size_t count,
@@ -371,8 +384,11 @@ GnomonStatus gnomon_intersect_n(const struct GnomonScene *scene,
 
 // As `gnomon_occluded` for each of `count` rays, shared out among threads.
 //
-// `occluded_out` gets one byte a ray, 1 where it hits anything and 0 where not; the two arrays must not overlap. The rest is as
-// for `gnomon_intersect_n`.
+// `occluded_out` gets one byte a ray, 1 where it hits anything and 0 where not; the two arrays must not overlap. The
+// rest is as for `gnomon_intersect_n`.
+//
+// # Safety `scene` is null or from `gnomon_scene_build`; `rays` and `occluded_out` are null or have `count`
+// elements; `options` is null or filled in.
 GnomonStatus gnomon_occluded_n(const struct GnomonScene *scene,
                                const struct GnomonRay *rays,
                                size_t count,
@@ -381,7 +397,8 @@ GnomonStatus gnomon_occluded_n(const struct GnomonScene *scene,
 
 // The version of the library that answers, as `major * 10000 + minor * 100 + patch`.
 //
-// Until version 1 a minor version may change the interface; the shared library's name tells them apart. Any thread may call this.
+// Until version 1 a minor version may change the interface; the shared library's name tells them apart. Any thread
+// may call this.
 uint32_t gnomon_version(void);
 
 // The same as text, for example "0.1.0". Static. Any thread may call this.

@@ -51,7 +51,8 @@ impl ClosestHit {
     }
 }
 
-/// Tests the triangles, the first of which the structure stores at `first_index`, and keeps the best hit. True ends the query.
+/// Tests the triangles, the first of which the structure stores at `first_index`, and keeps the best hit. True ends
+/// the query.
 #[inline(always)]
 pub(crate) fn test_triangles<Q: Query, P: PrecisionMode>(
     triangles: &[Triangle],

@@ -25,12 +25,12 @@ pub extern "C-unwind" fn gnomon_scene_builder_new() -> *mut GnomonSceneBuilder {
 
 /// Copies a mesh into the builder; the caller's arrays may go afterwards.
 ///
-/// `geometry_id_out` gets the mesh's id: 0 for the first, 1 for the second, and so on. It may be NULL.
-/// Coordinates are not looked at before the build, which decides by `invalid_triangles` about those that are not finite.
+/// `geometry_id_out` gets the mesh's id: 0 for the first, 1 for the second, and so on. It may be NULL. Coordinates
+/// are not looked at before the build, which decides by `invalid_triangles` about those that are not finite.
 ///
-/// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown index format, a stride that is too small, counts that no
-/// memory can hold, or an index out of range (the message names the geometry, the triangle, the index, and how many vertices there
-/// are); `GNOMON_ERROR_OUT_OF_MEMORY`. On an error the builder is as it was.
+/// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown index format, a stride that is too small,
+/// counts that no memory can hold, or an index out of range (the message names the geometry, the triangle, the index,
+/// and how many vertices there are); `GNOMON_ERROR_OUT_OF_MEMORY`. On an error the builder is as it was.
 ///
 /// # Safety
 /// `builder` is null or from `gnomon_scene_builder_new`, and no other thread uses it; `triangles` is null or describes

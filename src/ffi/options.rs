@@ -55,10 +55,11 @@ pub const GNOMON_INVALID_REJECT: u32 = 0;
 /// Such a triangle is left out and counted in the stats; the others keep their ids.
 pub const GNOMON_INVALID_SKIP: u32 = 1;
 
-/// Told the share of a build that is done, in [0, 1] and never falling, and `progress_user`. Returning false cancels the build.
+/// Told the share of a build that is done, in [0, 1] and never falling, and `progress_user`. Returning false cancels
+/// the build.
 ///
-/// Called on the thread that called `gnomon_scene_build`, at 0, about every 10 ms, and at 1. It may throw a C++ exception: the
-/// build is cancelled, and the exception passes through `gnomon_scene_build`.
+/// Called on the thread that called `gnomon_scene_build`, at 0, about every 10 ms, and at 1. It may throw a C++
+/// exception: the build is cancelled, and the exception passes through `gnomon_scene_build`.
 pub type GnomonProgress = Option<extern "C-unwind" fn(user: *mut c_void, done: f64) -> bool>;
 
 /// How to build a scene. Fill it with `gnomon_build_options_init`, then change what you like.
@@ -73,14 +74,15 @@ pub struct GnomonBuildOptions {
     pub quality: u32,
     /// `GNOMON_PRECISION_*`; by default `_ACCURATE`.
     pub precision: u32,
-    /// `GNOMON_ISA_*`, the most that queries may use, so that one machine can test every path; by default `_AUTO`. The answers do not depend on it.
+    /// `GNOMON_ISA_*`, the most that queries may use, so that one machine can test every path; by default `_AUTO`.
+    /// The answers do not depend on it.
     pub isa: u32,
     /// Threads of the build; 0, the default: as many as the machine has. The scene does not depend on it.
     pub thread_count: u32,
     /// `GNOMON_INVALID_*`; by default `_REJECT`.
     pub invalid_triangles: u32,
-    /// What the build may hold at a time, the builder's copy of the meshes not counted; a build that would pass it fails with
-    /// `GNOMON_ERROR_OUT_OF_MEMORY` before it allocates. 0, the default: no limit.
+    /// What the build may hold at a time, the builder's copy of the meshes not counted; a build that would pass it
+    /// fails with `GNOMON_ERROR_OUT_OF_MEMORY` before it allocates. 0, the default: no limit.
     pub memory_limit_bytes: u64,
     /// NULL, the default: nobody is told.
     pub progress: GnomonProgress,

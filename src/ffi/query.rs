@@ -8,9 +8,9 @@ use super::types::{GnomonHit, GnomonRay};
 
 /// The closest hit of a ray: true if there is one, and `hit_out` gets it; false for a miss, and `hit_out` says so.
 ///
-/// Accuracy: see `GNOMON_PRECISION_*`; the answer is the same on every instruction set and in every structure, and `gnomon_occluded`
-/// never disagrees. Any number of threads may call this on one scene. A null pointer answers false and sets `gnomon_last_error`;
-/// `hit_out` then is not touched.
+/// Accuracy: see `GNOMON_PRECISION_*`; the answer is the same on every instruction set and in every structure, and
+/// `gnomon_occluded` never disagrees. Any number of threads may call this on one scene. A null pointer answers false
+/// and sets `gnomon_last_error`; `hit_out` then is not touched.
 ///
 /// # Safety
 /// `scene` is null or from `gnomon_scene_build`; `ray` is null or readable; `hit_out` is null or writable.
@@ -53,14 +53,14 @@ pub unsafe extern "C-unwind" fn gnomon_occluded(scene: *const GnomonScene, ray: 
 
 /// As `gnomon_intersect` for each of `count` rays, with the same answers to the bit, shared out among threads.
 ///
-/// `hits_out` gets one hit a ray, in the rays' order; the two arrays must not overlap. `options` may be NULL for the defaults.
-/// `count` 0 is fine, the arrays then may be NULL.
+/// `hits_out` gets one hit a ray, in the rays' order; the two arrays must not overlap. `options` may be NULL for the
+/// defaults. `count` 0 is fine, the arrays then may be NULL.
 ///
-/// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an array that is not aligned for floats, or a count that no memory can
-/// hold; nothing is written then. Any number of threads may call this on one scene.
+/// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an array that is not aligned for floats, or a count
+/// that no memory can hold; nothing is written then. Any number of threads may call this on one scene.
 ///
-/// # Safety
-/// `scene` is null or from `gnomon_scene_build`; `rays` and `hits_out` are null or have `count` elements; `options` is null or filled in.
+/// # Safety `scene` is null or from `gnomon_scene_build`; `rays` and `hits_out` are null or have `count` elements;
+/// `options` is null or filled in.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn gnomon_intersect_n(
     scene: *const GnomonScene,
@@ -85,11 +85,11 @@ pub unsafe extern "C-unwind" fn gnomon_intersect_n(
 
 /// As `gnomon_occluded` for each of `count` rays, shared out among threads.
 ///
-/// `occluded_out` gets one byte a ray, 1 where it hits anything and 0 where not; the two arrays must not overlap. The rest is as
-/// for `gnomon_intersect_n`.
+/// `occluded_out` gets one byte a ray, 1 where it hits anything and 0 where not; the two arrays must not overlap. The
+/// rest is as for `gnomon_intersect_n`.
 ///
-/// # Safety
-/// `scene` is null or from `gnomon_scene_build`; `rays` and `occluded_out` are null or have `count` elements; `options` is null or filled in.
+/// # Safety `scene` is null or from `gnomon_scene_build`; `rays` and `occluded_out` are null or have `count`
+/// elements; `options` is null or filled in.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn gnomon_occluded_n(
     scene: *const GnomonScene,

@@ -10,18 +10,19 @@ use crate::scene::Scene;
 /// An immutable scene; any number of threads may query it at a time.
 pub struct GnomonScene(pub(super) Scene);
 
-/// Builds a scene from all meshes of a builder; the builder stays as it is and may build again. Without any mesh the scene is empty: every ray misses.
+/// Builds a scene from all meshes of a builder; the builder stays as it is and may build again. Without any mesh the
+/// scene is empty: every ray misses.
 ///
-/// `options` may be NULL for the defaults. `scene_out` gets the scene, to be freed with `gnomon_scene_free`; it is not touched on an error.
-/// Threads: see `thread_count`. Other threads may build other scenes, and query this builder's earlier ones, meanwhile.
+/// `options` may be NULL for the defaults. `scene_out` gets the scene, to be freed with `gnomon_scene_free`; it is
+/// not touched on an error. Threads: see `thread_count`. Other threads may build other scenes, and query this
+/// builder's earlier ones, meanwhile.
 ///
-/// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that is not finite (unless it
-/// is to be skipped; the message names the geometry, the triangle and the vertex); `GNOMON_ERROR_UNSUPPORTED`;
-/// `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
+/// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that
+/// is not finite (unless it is to be skipped; the message names the geometry, the triangle and the vertex);
+/// `GNOMON_ERROR_UNSUPPORTED`; `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
 ///
-/// # Safety
-/// `builder` is null or from `gnomon_scene_builder_new`, and no other thread changes it; `options` is null or filled in;
-/// `scene_out` is null or writable.
+/// # Safety `builder` is null or from `gnomon_scene_builder_new`, and no other thread changes it; `options` is null
+/// or filled in; `scene_out` is null or writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn gnomon_scene_build(
     builder: *const GnomonSceneBuilder,
@@ -64,11 +65,11 @@ pub unsafe extern "C-unwind" fn gnomon_scene_free(scene: *mut GnomonScene) {
     });
 }
 
-/// The box of all triangles that were not skipped, those of zero area among them. Without any, lower is `INFINITY` and upper
-/// `-INFINITY`.
+/// The box of all triangles that were not skipped, those of zero area among them. Without any, lower is `INFINITY`
+/// and upper `-INFINITY`.
 ///
-/// `lower_out` and `upper_out` get three floats each (x, y, z), exact. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer.
-/// Any thread may call this.
+/// `lower_out` and `upper_out` get three floats each (x, y, z), exact. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a
+/// null pointer. Any thread may call this.
 ///
 /// # Safety
 /// `scene` is null or from `gnomon_scene_build`; the outputs are null or have room for three floats each.
@@ -97,9 +98,9 @@ pub unsafe extern "C-unwind" fn gnomon_scene_bounds(
 
 /// What a scene is made of and what its build took.
 ///
-/// Writes the first `stats_bytes` bytes: pass `sizeof(GnomonSceneStats)`, and a program compiled against an older header gets the fields
-/// that it knows; bytes beyond those that this library knows become 0. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null
-/// pointer. Any thread may call this.
+/// Writes the first `stats_bytes` bytes: pass `sizeof(GnomonSceneStats)`, and a program compiled against an older
+/// header gets the fields that it knows; bytes beyond those that this library knows become 0. Errors:
+/// `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer. Any thread may call this.
 ///
 /// # Safety
 /// `scene` is null or from `gnomon_scene_build`; `stats_out` is null or has room for `stats_bytes` bytes.

@@ -91,17 +91,18 @@ fn panicked(panic: &(dyn Any + Send)) -> Failure {
     Failure { status: GNOMON_ERROR_INTERNAL, message: format!("a bug in gnomon: {message}") }
 }
 
-/// The last failure of the calling thread as one sentence that names the culprit and its values: which geometry, which triangle,
-/// which index. "" before the first one; a later success does not clear it.
+/// The last failure of the calling thread as one sentence that names the culprit and its values: which geometry,
+/// which triangle, which index. "" before the first one; a later success does not clear it.
 ///
-/// The text is UTF-8 and ends with a NUL; it belongs to the library and stays valid until the next failing call on the same
-/// thread, or the thread's end. Any thread may call this.
+/// The text is UTF-8 and ends with a NUL; it belongs to the library and stays valid until the next failing call on
+/// the same thread, or the thread's end. Any thread may call this.
 #[unsafe(no_mangle)]
 pub extern "C-unwind" fn gnomon_last_error() -> *const c_char {
     LAST_ERROR.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }
 
-/// The name of a status, for example "GNOMON_ERROR_OUT_OF_MEMORY"; "GNOMON_STATUS_UNKNOWN" for a number without a meaning.
+/// The name of a status, for example "GNOMON_ERROR_OUT_OF_MEMORY"; "GNOMON_STATUS_UNKNOWN" for a number without a
+/// meaning.
 ///
 /// The text is static. Any thread may call this.
 #[unsafe(no_mangle)]

@@ -16,8 +16,8 @@ pub const GNOMON_INDEX_U32: u32 = 2;
 
 /// `origin + t * direction` for `t` in the closed interval `[t_min, t_max]`. 32 bytes.
 ///
-/// A ray with a NaN, an infinite origin or direction, a zero direction, or `t_min > t_max` misses everything. `t_max` may be
-/// `INFINITY`, `t_min` may be negative.
+/// A ray with a NaN, an infinite origin or direction, a zero direction, or `t_min > t_max` misses everything. `t_max`
+/// may be `INFINITY`, `t_min` may be negative.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct GnomonRay {
@@ -65,7 +65,8 @@ pub struct GnomonTriangles {
     pub position_stride: usize,
     /// How many vertices there are.
     pub vertex_count: usize,
-    /// Three indices at the start of each stride, each below `vertex_count`. NULL: the vertices are taken three by three.
+    /// Three indices at the start of each stride, each below `vertex_count`. NULL: the vertices are taken three by
+    /// three.
     pub indices: *const c_void,
     /// `GNOMON_INDEX_U16` or `GNOMON_INDEX_U32`; not looked at without `indices`.
     pub index_format: u32,
@@ -107,8 +108,8 @@ pub struct GnomonSceneStats {
     pub peak_build_bytes: u64,
     /// Wall-clock time of the build.
     pub build_seconds: f64,
-    /// Expected cost of a random ray that meets the scene's box, in triangle tests (MacDonald and Booth 1990, "Heuristics for ray
-    /// tracing using space subdivision"); NaN where it has no meaning.
+    /// Expected cost of a random ray that meets the scene's box, in triangle tests (MacDonald and Booth 1990,
+    /// "Heuristics for ray tracing using space subdivision"); NaN where it has no meaning.
     pub sah_cost: f64,
 }
 

@@ -32,9 +32,9 @@ impl Aabb {
 /// A ray made ready for box tests inside one scene.
 ///
 /// The test must visit every box whose triangle may answer: a triangle test in `f32` takes triangles that the exact
-/// ray passes at a small distance, the band. So each slab is widened, on both sides, by a slack that covers the
-/// band, the rounding of the test itself, and the rounding of the hit's `t`. With `u = 2^-24` and `M` the largest distance along
-/// an axis from the origin to a corner of the scene, per axis and in units of length:
+/// ray passes at a small distance, the band. So each slab is widened, on both sides, by a slack that covers the band,
+/// the rounding of the test itself, and the rounding of the hit's `t`. With `u = 2^-24` and `M` the largest distance
+/// along an axis from the origin to a corner of the scene, per axis and in units of length:
 /// - 6 u M: the sheared coordinates of a vertex are off by at most 2u|ax| + 4u|az| (`triangle_hit.rs`);
 /// - 3 u M: `(plane - origin) * inverse` makes three roundings (Ize 2013, "Robust BVH ray traversal", section 3);
 /// - 1 u M: the addition of the slack rounds once;
@@ -89,8 +89,8 @@ impl SlabRay {
     }
 
     /// Where the ray enters the box given as `[[lower, upper]; 3]`, if it does so within `[t_min, t_max]` (all in
-    /// scaled lengths). A NaN from `0 * inf`, an origin exactly in the plane of a slab that it runs along, decides nothing:
-    /// each comparison keeps the other operand.
+    /// scaled lengths). A NaN from `0 * inf`, an origin exactly in the plane of a slab that it runs along, decides
+    /// nothing: each comparison keeps the other operand.
     #[inline(always)]
     pub(crate) fn enter(&self, planes: &[[f32; 2]; 3], t_min: f32, t_max: f32) -> Option<f32> {
         let (mut enter, mut leave) = (t_min, t_max);

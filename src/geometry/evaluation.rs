@@ -54,10 +54,11 @@ pub(super) enum Evaluation {
 impl Evaluation {
     /// Shears without a division, `x = ax dz - dx az`, so that everything is a polynomial in the input.
     ///
-    /// With `e` the relative error of one operation, `m` the largest distance of a vertex from the origin along an axis and
-    /// `r = m |dz|`: a sheared coordinate is off by at most `3e (|ax dz| + |dx az|) <= 6 e r`; so an edge function of the vertices b and c by at
-    /// most `6 e r s + 72 e^2 r^2` from that, `s = |bx| + |by| + |cx| + |cy|`, and by `2e (|bx cy| + |by cx|) + e s 2r <= 6 e r s` from its own three operations:
-    /// together less than `16 e r (s + 16 e r)`.
+    /// With `e` the relative error of one operation, `m` the largest distance of a vertex from the origin along an
+    /// axis and `r = m |dz|`: a sheared coordinate is off by at most `3e (|ax dz| + |dx az|) <= 6 e r`; so an edge
+    /// function of the vertices b and c by at most `6 e r s + 72 e^2 r^2` from that, `s = |bx| + |by| + |cx| + |cy|`,
+    /// and by `2e (|bx cy| + |by cx|) + e s 2r <= 6 e r s` from its own three operations: together less than `16 e r
+    /// (s + 16 e r)`.
     pub(super) fn of<R: Real>(ray: &TriangleRay, triangle: &Triangle) -> Self {
         const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 31) as f64;
 

@@ -1,10 +1,10 @@
 //! Where a ray meets a triangle: watertight decisions in `f32`, and `t`, `u`, `v` to half an ulp.
 //!
-//! The decision is Woop's (Woop, Benthin, Wald 2013, "Watertight ray/triangle intersection"): the vertices, relative to
-//! the origin, are sheared so that the ray becomes an axis; the ray hits where the three edge functions of the remaining
-//! two coordinates agree in sign. A vertex is sheared the same way for every triangle that has it, and the signs of
-//! the edge functions of the sheared coordinates are exact, so that neighbours agree about the edge between them:
-//! nothing slips through.
+//! The decision is Woop's (Woop, Benthin, Wald 2013, "Watertight ray/triangle intersection"): the vertices, relative
+//! to the origin, are sheared so that the ray becomes an axis; the ray hits where the three edge functions of the
+//! remaining two coordinates agree in sign. A vertex is sheared the same way for every triangle that has it, and the
+//! signs of the edge functions of the sheared coordinates are exact, so that neighbours agree about the edge between
+//! them: nothing slips through.
 //!
 //! What is inexact is the shear. With `u = 2^-24`, `z` the axis of the largest direction component, `a` the vertex
 //! minus the origin, and `|dx / dz| <= 1`, the sheared `x = ax - (dx / dz) az` is off by at most `2u |ax| + 4u |az|`
@@ -185,15 +185,15 @@ impl PrecisionMode for Accurate {
     }
 }
 
-/// No point of the triangle lies on the ray, as far as can be told: the weights that decided name a point of the triangle within
-/// the band of it.
+/// No point of the triangle lies on the ray, as far as can be told: the weights that decided name a point of the
+/// triangle within the band of it.
 #[cold]
 fn within_the_band(ray: &TriangleRay, triangle: &Triangle, sheared: &Weights<f64>) -> TriangleHit {
     ray.interpolate(sheared, &ray.main_axis_distances(triangle))
 }
 
-/// Where `t` is so small beside the triangle's extent that its relative error grows: in twice the precision that happens 2^-70 of the extent
-/// from the origin, and there at least an exact zero is told.
+/// Where `t` is so small beside the triangle's extent that its relative error grows: in twice the precision that
+/// happens 2^-70 of the extent from the origin, and there at least an exact zero is told.
 #[cold]
 fn near_the_origin(ray: &TriangleRay, triangle: &Triangle, hit: TriangleHit) -> TriangleHit {
     if triangle.plane_contains(ray.origin) {
@@ -231,8 +231,8 @@ mod tests {
 
     const WHOLE_LINE: Interval = Interval { t_min: f32::NEG_INFINITY, t_max: f32::INFINITY };
 
-    /// The exact `t`, `u`, `v` of the ray's meeting with the triangle's plane, by Cramer's rule in rationals; `None` for a ray that is
-    /// parallel to it.
+    /// The exact `t`, `u`, `v` of the ray's meeting with the triangle's plane, by Cramer's rule in rationals; `None`
+    /// for a ray that is parallel to it.
     fn exact(ray: &Ray, vertices: &[[f32; 3]; 3]) -> Option<[BigRational; 3]> {
         let rational = |v: f32| BigRational::from_float(v).expect("finite");
         let point = |p: [f32; 3]| p.map(rational);
@@ -300,7 +300,8 @@ mod tests {
             let one = BigRational::from_integer(BigInt::from(1));
             prop_assume!(u >= zero && v >= zero && &u + &v <= one);
 
-            // The target may be within the band of an edge, where a neighbour would be taken: then there is nothing to compare.
+            // The target may be within the band of an edge, where a neighbour would be taken: then there is nothing
+            // to compare.
             let Some(hit) = TriangleRay::new(&ray).hit::<Accurate>(&triangle, WHOLE_LINE) else { return Ok(()) };
             prop_assert!(is_near(hit.t, &t, 0.51 * ulp(hit.t)), "t is {:e}", hit.t);
             let uv_bound = 0.52 * f64::from(f32::EPSILON) / 2.0;

@@ -99,7 +99,6 @@ mod tests {
     use super::*;
     use num_bigint::BigInt;
     use num_rational::BigRational;
-    use num_rational::Ratio;
     use proptest::prelude::*;
 
     fn exact(value: DoubleDouble) -> BigRational {
@@ -108,21 +107,23 @@ mod tests {
 
     /// `|computed - truth| <= bound * scale`.
     fn within(computed: DoubleDouble, truth: &BigRational, scale: &BigRational) -> bool {
-        let error = exact(computed) - truth;
         let bound = BigRational::from_float(DoubleDouble::UNIT_ROUNDOFF).unwrap() * scale;
-        let zero = Ratio::from_integer(BigInt::from(0));
-        let magnitude = if error < zero { -error } else { error };
-        magnitude <= bound
+        magnitude(&(exact(computed) - truth)) <= bound
     }
 
     fn magnitude(value: &BigRational) -> BigRational {
-        let zero = Ratio::from_integer(BigInt::from(0));
+        let zero = BigRational::from_integer(BigInt::from(0));
         if *value < zero { -value.clone() } else { value.clone() }
     }
 
     proptest! {
         #[test]
-        fn operations_stay_within_their_bound(a in -1e30f32..1e30, b in -1e-20f32..1e-20, c in -1e10f32..1e10, d in -1f32..1.0) {
+        fn operations_stay_within_their_bound(
+            a in -1e30f32..1e30,
+            b in -1e-20f32..1e-20,
+            c in -1e10f32..1e10,
+            d in -1f32..1.0,
+        ) {
             let x = DoubleDouble::difference(f64::from(a), f64::from(b));
             let y = DoubleDouble::difference(f64::from(c), f64::from(d));
             let (rx, ry) = (exact(x), exact(y));

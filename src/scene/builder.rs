@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{BuildError, BuildOptions, Scene, build, watched_build};
 use crate::accel::Watch;
-use crate::geometry::{INVALID_ID, TriangleView};
+use crate::geometry::{INVALID_ID, IndexView, TriangleView};
 
 /// A mesh as the builder keeps it: every index is in range. Coordinates may be anything.
 pub(super) struct Geometry {
@@ -24,7 +24,8 @@ impl SceneBuilder {
         Self::default()
     }
 
-    /// Copies a mesh and returns its `geometry_id`, the number of meshes before it. On an error the builder is as it was.
+    /// Copies a mesh and returns its `geometry_id`, the number of meshes before it. On an error the builder is as it
+    /// was.
     pub fn add_triangles(&mut self, mesh: &TriangleView) -> Result<u32, BuildError> {
         let limit = INVALID_ID as usize;
         let count = self.geometries.len();
@@ -45,8 +46,9 @@ impl SceneBuilder {
         build::build(&self.geometries, options, &Watch::default())
     }
 
-    /// Builds on another thread while the calling one reports the share that is done, in `[0, 1]` and never falling, to
-    /// `on_progress`; `false` from it cancels the build. An unwinding `on_progress` cancels the build as well and passes through.
+    /// Builds on another thread while the calling one reports the share that is done, in `[0, 1]` and never falling,
+    /// to `on_progress`; `false` from it cancels the build. An unwinding `on_progress` cancels the build as well and
+    /// passes through.
     pub fn build_watched(
         &self,
         options: &BuildOptions,
@@ -64,6 +66,11 @@ impl Geometry {
             if count > limit {
                 return Err(BuildError::TooMany { geometry_id, what, count, limit });
             }
+        }
+        if let IndexView::Consecutive { .. } = mesh.indices
+            && vertex_count / 3 < triangle_count
+        {
+            return Err(BuildError::TooFewVertices { geometry_id, triangle_count, vertex_count });
         }
         let mut positions = reserve(vertex_count)?;
         let mut triangles = reserve(triangle_count)?;

@@ -1,7 +1,7 @@
 //! A build that tells how far it is.
 //!
-//! The build runs on a thread of its own, so that the callback runs on the caller's, and may unwind (a C++ exception too)
-//! without ever meeting a frame of the build.
+//! The build runs on a thread of its own, so that the callback runs on the caller's, and may unwind (a C++ exception
+//! too) without ever meeting a frame of the build.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError};

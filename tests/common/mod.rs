@@ -128,7 +128,8 @@ pub(crate) fn meshes() -> Vec<Mesh> {
     ]
 }
 
-/// Rays at random, at vertices, edges and insides, along axes, in planes, from far away, with long and short directions.
+/// Rays at random, at vertices, edges and insides, along axes, in planes, from far away, with long and short
+/// directions.
 pub(crate) fn rays_for(mesh: &Mesh, rng: &mut Rng) -> Vec<Ray> {
     let lower = mesh.vertices.iter().copied().reduce(Vec3::min).expect("a mesh has vertices");
     let upper = mesh.vertices.iter().copied().reduce(Vec3::max).expect("a mesh has vertices");

@@ -97,8 +97,8 @@ pub(crate) trait SplitRule: Sync {
     fn split(&self, references: &mut [Reference], extent: &NodeExtent, context: &BuildContext) -> Option<usize>;
 }
 
-/// Maps chunks of a slice, on all threads where it is long, and combines what they give. The result does not depend on the number of
-/// threads as long as `combine` is associative and commutative to the bit.
+/// Maps chunks of a slice, on all threads where it is long, and combines what they give. The result does not depend
+/// on the number of threads as long as `combine` is associative and commutative to the bit.
 pub(super) fn reduce_chunks<T: Send>(
     references: &[Reference],
     context: &BuildContext,
@@ -164,8 +164,8 @@ struct Subtree<'a, R> {
 }
 
 impl<R: SplitRule> Subtree<'_, R> {
-    /// `references` are those from `first` on; their subtree has room for its pairs, one fewer than there are references,
-    /// in `pairs`, which are those from `first_pair` on.
+    /// `references` are those from `first` on; their subtree has room for its pairs, one fewer than there are
+    /// references, in `pairs`, which are those from `first_pair` on.
     fn build(
         &self,
         references: &mut [Reference],
