@@ -163,7 +163,7 @@ TEST_CASE("vertices_three_by_three_must_suffice_for_the_triangles") {
     GnomonTriangles triangles = mesh.view();
     triangles.indices = nullptr;
     triangles.triangle_count = 2;
-    add_fails(triangles, {"geometry 0", "triangle 1", "3 vertices"});
+    add_fails(triangles, {"geometry 0", "2 triangles", "6 vertices", "there are 3"});
 }
 
 TEST_CASE("overflowing_counts_and_strides_are_refused_before_a_read") {

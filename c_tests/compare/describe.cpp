@@ -1,6 +1,7 @@
 #include "compare/describe.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 namespace harness {
@@ -17,6 +18,14 @@ std::string triangle_text(std::uint32_t geometry_id, std::uint32_t primitive_id,
 }
 
 }  // namespace
+
+std::string ray_text(const GnomonRay& ray) {
+    const std::array words = {ray.origin[0],    ray.origin[1],    ray.origin[2],    ray.t_min,
+                              ray.direction[0], ray.direction[1], ray.direction[2], ray.t_max};
+    std::string text;
+    for (const float word : words) text += (text.empty() ? "" : ",") + hex(word);
+    return text;
+}
 
 std::string hit_text(const GnomonHit& hit) {
     if (hit.geometry_id == GNOMON_INVALID_ID) return "miss";

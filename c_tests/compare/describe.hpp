@@ -7,6 +7,10 @@
 
 namespace harness {
 
+/// A ray as --replay takes it: origin, t_min, direction and t_max as eight hexadecimal floats with commas between them; bit for
+/// bit.
+std::string ray_text(const GnomonRay& ray);
+
 /// "geometry 0, primitive 12, t 0x1.8p+1, u 0x1p-2, v 0x1p-3", or "miss".
 std::string hit_text(const GnomonHit& hit);
 

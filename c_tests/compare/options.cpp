@@ -139,16 +139,4 @@ std::optional<Options> parse_options(int argc, char** argv, int& status) {
 
 std::string call_form_name(CallForm form) { return name_of(call_names, static_cast<std::uint32_t>(form)); }
 
-std::string ray_text(const GnomonRay& ray) {
-    const std::array words = {ray.origin[0],    ray.origin[1],    ray.origin[2],    ray.t_min,
-                              ray.direction[0], ray.direction[1], ray.direction[2], ray.t_max};
-    std::string text;
-    for (const float word : words) {
-        char buffer[32];
-        std::snprintf(buffer, sizeof buffer, "%a", static_cast<double>(word));
-        text += (text.empty() ? "" : ",") + std::string(buffer);
-    }
-    return text;
-}
-
 }  // namespace harness

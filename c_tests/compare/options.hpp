@@ -32,8 +32,4 @@ std::optional<Options> parse_options(int argc, char** argv, int& status);
 /// "single", "prefilled", "batch".
 std::string call_form_name(CallForm form);
 
-/// A ray as --replay takes it: origin, t_min, direction and t_max as eight hexadecimal floats with commas between them; bit for
-/// bit.
-std::string ray_text(const GnomonRay& ray);
-
 }  // namespace harness

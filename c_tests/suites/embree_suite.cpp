@@ -9,7 +9,6 @@
 
 #include "backend/backend.hpp"
 #include "compare/describe.hpp"
-#include "compare/options.hpp"
 #include "oracle/oracle.hpp"
 #include "rays/rays.hpp"
 #include "scene/load.hpp"

@@ -43,8 +43,10 @@ pub(super) enum Evaluation {
     /// `t` is within 2^-31 of the exact one, relatively, before its only rounding to `f32`; so are `u` and `v`,
     /// absolutely. That is 0.008 ulp on top of the half.
     Inside(TriangleHit),
-    /// As good but for `t`, which is too near to 0 to have a relative error: it is off by at most `t_error`.
-    Near { hit: TriangleHit, t: f64, t_error: f64 },
+    /// As good but for `t`, which is so near to 0 that its relative error is too large: it is off by at most
+    /// `t_error`. The exact one is `t_per_volume`, which is good to 2^-31, times the volume between the triangle and
+    /// the ray's origin.
+    Near { hit: TriangleHit, t: f64, t_error: f64, t_per_volume: f64 },
     /// The ray passes the triangle, certainly.
     Outside,
     /// The error bound is too large to tell: the triangle is seen edge-on, or is a sliver far away.
@@ -114,7 +116,10 @@ impl Evaluation {
         let t_bound = bound * range + 5.0 * R::UNIT_ROUNDOFF * sum_size * magnitude(&az);
         if t_bound > RELATIVE_ERROR * weighted.to_f64().abs() {
             // Twice, for the rounding of the division and of the bound itself.
-            return Self::Near { hit, t, t_error: 2.0 * t_bound / denominator.abs() };
+            let t_error = 2.0 * t_bound / denominator.abs();
+            // With n the normal, t = volume / (n . d); and the weights' sum is -(n . d) dz, seen along the sheared ray.
+            let t_per_volume = -dz.to_f64() / sum.to_f64();
+            return Self::Near { hit, t, t_error, t_per_volume };
         }
         Self::Inside(hit)
     }

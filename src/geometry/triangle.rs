@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use robust::Coord;
 
 use super::Aabb;
+use crate::math::Expansion;
 
 /// The vertices, a row for each axis: `axes[1][2]` is the y of the third vertex. A ray's axis permutation then is a
 /// choice of rows.
@@ -47,11 +48,13 @@ impl Triangle {
         })
     }
 
-    /// Whether the point lies in the triangle's plane, exactly (orient3d of the same paper).
-    pub(crate) fn plane_contains(&self, point: [f32; 3]) -> bool {
-        let coordinates = |p: [f32; 3]| robust::Coord3D { x: f64::from(p[0]), y: f64::from(p[1]), z: f64::from(p[2]) };
-        let [a, b, c] = std::array::from_fn(|corner| coordinates(self.vertex(corner)));
-        robust::orient3d(a, b, c, coordinates(point)) == 0.0
+    /// Six times the volume between the triangle and the point, `a . (b x c)` of the vertices relative to the point:
+    /// computed exactly, then rounded to within an ulp. 0 for a point of the triangle's plane alone.
+    pub(crate) fn signed_volume(&self, point: [f32; 3]) -> f64 {
+        let [x, y, z]: [[Expansion; 3]; 3] =
+            std::array::from_fn(|axis| self.axes[axis].map(|v| Expansion::difference(v, point[axis])));
+        let minor = |p: &[Expansion; 3], q: &[Expansion; 3]| &p[1] * &q[2] - &p[2] * &q[1];
+        (&x[0] * &minor(&y, &z) + &y[0] * &minor(&z, &x) + &z[0] * &minor(&x, &y)).to_f64()
     }
 }
 
@@ -71,6 +74,16 @@ mod tests {
         assert!(!triangle([[0.1, 0.2, 0.3], [0.2, 0.4, 0.6], [0.4, 0.8, 1.2f32.next_up()]]).has_zero_area());
         // Edges that f64 cannot subtract exactly.
         assert!(!triangle([[1e30, 0.0, 0.0], [0.0, 1e-30, 0.0], [-1e30, 3e-30, 0.0]]).has_zero_area());
+    }
+
+    #[test]
+    fn signed_volume_is_exact_where_doubles_cancel() {
+        let floor = triangle([[1.0, 0.1, 0.0], [-0.3, 0.7, 0.0], [0.2, -0.9, 0.0]]);
+        let least = f32::from_bits(1);
+        assert_eq!(floor.signed_volume([0.1, 0.2, 0.0]), 0.0);
+        let above = floor.signed_volume([0.1, 0.2, least]);
+        assert_eq!(above, -floor.signed_volume([0.1, 0.2, -least]));
+        assert!(above < 0.0 && above > -4.0 * f64::from(least));
     }
 
     #[test]

@@ -2,9 +2,11 @@
 //!
 //! Source: Joldes, Muller, Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
 //! arithmetic", ACM TOMS 44(2), 2017: algorithms 6 (addition, relative error 3u^2 + 13u^3 with u = 2^-53) and
-//! 11 (multiplication, 5u^2), the product's low part by Dekker's splitting so that no CPU needs a fused multiply-add.
+//! 11 (multiplication, 5u^2).
 
 use std::ops::{Add, Mul, Sub};
+
+use super::error_free::{fast_two_sum, two_product, two_sum};
 
 /// `high + low`, with `|low|` at most half an ulp of `high`.
 #[derive(Clone, Copy, Debug)]
@@ -19,30 +21,7 @@ impl DoubleDouble {
 
     /// The exact difference of two numbers.
     pub(crate) fn difference(a: f64, b: f64) -> Self {
-        Self::sum(a, -b)
-    }
-
-    /// The exact sum (Knuth's TwoSum: no condition on the magnitudes).
-    fn sum(a: f64, b: f64) -> Self {
-        let high = a + b;
-        let b_part = high - a;
-        let a_part = high - b_part;
-        Self { high, low: (a - a_part) + (b - b_part) }
-    }
-
-    /// The exact sum where `|a| >= |b|` (Dekker's Fast2Sum).
-    fn ordered_sum(a: f64, b: f64) -> Self {
-        let high = a + b;
-        Self { high, low: b - (high - a) }
-    }
-
-    /// The exact product (Dekker 1971). The magnitudes here, products of a few `f32`, are far from overflow.
-    fn product(a: f64, b: f64) -> Self {
-        let high = a * b;
-        let (a_high, a_low) = split(a);
-        let (b_high, b_low) = split(b);
-        let low = ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low;
-        Self { high, low }
+        two_sum(a, -b).into()
     }
 
     /// The nearest `f64`.
@@ -51,12 +30,10 @@ impl DoubleDouble {
     }
 }
 
-/// Veltkamp's split of a number into two of at most 26 bits.
-fn split(a: f64) -> (f64, f64) {
-    const FACTOR: f64 = 134_217_729.0; // 2^27 + 1
-    let scaled = FACTOR * a;
-    let high = scaled - (scaled - a);
-    (high, a - high)
+impl From<(f64, f64)> for DoubleDouble {
+    fn from((high, low): (f64, f64)) -> Self {
+        Self { high, low }
+    }
 }
 
 impl From<f64> for DoubleDouble {
@@ -69,10 +46,10 @@ impl Add for DoubleDouble {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        let high = Self::sum(self.high, other.high);
-        let low = Self::sum(self.low, other.low);
-        let first = Self::ordered_sum(high.high, high.low + low.high);
-        Self::ordered_sum(first.high, low.low + first.low)
+        let (high, high_error) = two_sum(self.high, other.high);
+        let (low, low_error) = two_sum(self.low, other.low);
+        let (high, error) = fast_two_sum(high, high_error + low);
+        fast_two_sum(high, low_error + error).into()
     }
 }
 
@@ -88,9 +65,9 @@ impl Mul for DoubleDouble {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        let product = Self::product(self.high, other.high);
+        let (product, error) = two_product(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
-        Self::ordered_sum(product.high, product.low + cross)
+        fast_two_sum(product, error + cross).into()
     }
 }
 

@@ -1,7 +1,10 @@
 //! Floating-point facts and error-free arithmetic that the geometry is built on.
 
 mod double_double;
+mod error_free;
+mod expansion;
 mod float;
 
 pub(crate) use double_double::DoubleDouble;
+pub(crate) use expansion::Expansion;
 pub(crate) use float::{gamma, scale_by_power_of_two_near};
