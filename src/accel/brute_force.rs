@@ -11,7 +11,7 @@ pub(crate) struct BruteForce {
 
 impl BruteForce {
     pub(crate) fn build(triangles: Vec<Triangle>, context: &BuildContext) -> Result<Self, BuildFailure> {
-        context.advance(triangles.len())?;
+        context.check()?;
         Ok(Self { triangles })
     }
 

@@ -12,7 +12,7 @@ use super::builder::Geometry;
 use super::{BuildError, BuildOptions, Scene, build};
 use crate::accel::Watch;
 
-/// Cancels and waits for the build when it is dropped early, by an unwinding callback.
+/// Cancels and waits for the build when it is dropped early, because the callback said so or unwinds.
 struct Job {
     watch: Arc<Watch>,
     thread: Option<JoinHandle<()>>,
@@ -57,7 +57,8 @@ pub(super) fn build_watched(
             Ok(result) => break result,
             Err(RecvTimeoutError::Timeout) => {
                 if !on_progress(job.watch.done()) {
-                    job.watch.cancel();
+                    // Dropping the job cancels the build and waits for its end.
+                    return Err(BuildError::Cancelled);
                 }
             }
             Err(RecvTimeoutError::Disconnected) => {
