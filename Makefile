@@ -13,7 +13,7 @@ SCENE ?= /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEng
 ctest = ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
 .DEFAULT_GOAL := help
-.PHONY: help build compare test test-slow check test-rust test-c test-sanitized format clean packages packages-test cargo
+.PHONY: help build compare test test-slow hard check test-rust test-c test-sanitized format clean packages packages-test cargo
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -55,6 +55,11 @@ test-slow: packages-test cargo ## Run the slow tests
 	cmake -S . -B $(BUILD)
 	cmake --build $(BUILD) --parallel $(JOBS)
 	$(ctest) --test-dir $(BUILD) --label-regex slow
+
+hard: packages-test cargo ## Aim 10^8 rays of each class at the seams of closed meshes: hours
+	cmake -S . -B $(BUILD)
+	cmake --build $(BUILD) --parallel $(JOBS) --target leak_suite
+	GNOMON_RAYS=100000000 $(BUILD)/c_tests/suites/leak_suite
 
 format: cargo ## Format the Rust, C and C++ sources
 	cargo fmt --all
