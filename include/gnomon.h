@@ -397,8 +397,7 @@ GnomonStatus gnomon_occluded_n(const struct GnomonScene *scene,
 
 // The version of the library that answers, as `major * 10000 + minor * 100 + patch`.
 //
-// Until version 1 a minor version may change the interface; the shared library's name tells them apart. Any thread
-// may call this.
+// Until version 1 a minor version may change the interface. Any thread may call this.
 uint32_t gnomon_version(void);
 
 // The same as text, for example "0.1.0". Static. Any thread may call this.

@@ -13,8 +13,7 @@ const fn number(text: &str) -> u32 {
 
 /// The version of the library that answers, as `major * 10000 + minor * 100 + patch`.
 ///
-/// Until version 1 a minor version may change the interface; the shared library's name tells them apart. Any thread
-/// may call this.
+/// Until version 1 a minor version may change the interface. Any thread may call this.
 #[unsafe(no_mangle)]
 pub extern "C-unwind" fn gnomon_version() -> u32 {
     const MAJOR: u32 = number(env!("CARGO_PKG_VERSION_MAJOR"));
