@@ -79,12 +79,6 @@ CullBox BoxBuilder::box() const {
     return box;
 }
 
-// A triangle that f32 decides to be hit has a point p with |x(p)| and |y(p)| within the band of filter.cpp, for the band is
-// the same for all its vertices when |ax| and |az| are replaced by their largest, R, over the box: at most 6u R, and its
-// absolute term. Then the point of the line beside p is in the box grown by that much. 8u R leaves 2u R for the roundings
-// here, each of them below 2^-50 R; a group's margin is twice that, so that it also covers those of its triangles' boxes.
-const double Line::triangle_margin = 8 * 0x1p-24;
-
 Line::Line(const GnomonRay& ray) {
     const double largest = std::abs(RayFrame(ray).direction[2]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -95,8 +89,13 @@ Line::Line(const GnomonRay& ray) {
 
 // A line misses a box iff the cross product of its direction and some axis separates them (Gottschalk, Lin, Manocha 1996,
 // "OBBTree"): no division, so that no infinity or NaN can arise from finite coordinates.
-bool Line::meets(const CullBox& box, double relative_margin) const {
-    constexpr double absolute_margin = 0x1p-140;  // above the band's 2^-148; its 2^-148 |az| is far below 2u R
+//
+// The box is grown by a margin. A triangle that f32 decides to be hit has a point p with |x(p)| and |y(p)| within the band of
+// filter.cpp: with R the largest coordinate of the box, from the origin, at most 6u R and an absolute term. The point of the line
+// beside p is in the box grown by that. 16u R leaves 10u R for the roundings here, each of them below 2^-50 R.
+bool Line::may_meet(const CullBox& box) const {
+    constexpr double relative_margin = 16 * 0x1p-24;
+    constexpr double absolute_margin = 0x1p-140;  // above the band's 2^-148; its 2^-148 |az| is far below u R
     const Vec3d to_centre{box.centre[0] - origin_[0], box.centre[1] - origin_[1], box.centre[2] - origin_[2]};
     const double reach = std::max(
         {std::abs(to_centre[0]) + box.half[0], std::abs(to_centre[1]) + box.half[1], std::abs(to_centre[2]) + box.half[2]});

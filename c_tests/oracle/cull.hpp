@@ -1,6 +1,7 @@
 // Which triangles a line may come near: blocks of triangles under boxes, left out only when the line provably misses the box.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -12,7 +13,7 @@
 
 namespace harness {
 
-/// Centre and half extent are exact to within the margins of Line.
+/// Centre and half extent are exact to within the margin of Line::may_meet.
 struct CullBox {
     Vec3d centre, half;
 };
@@ -32,17 +33,10 @@ class Line {
 public:
     explicit Line(const GnomonRay& ray);
 
-    /// Whether the f32 decision could see the line meet the triangle with this box.
-    bool may_meet_triangle(const CullBox& box) const { return meets(box, triangle_margin); }
-
-    /// True wherever may_meet_triangle() is true for a box inside this one.
-    bool may_meet_group(const CullBox& box) const { return meets(box, 2 * triangle_margin); }
+    /// False only where neither exact arithmetic nor f32 could see the line meet a triangle inside the box.
+    bool may_meet(const CullBox& box) const;
 
 private:
-    static const double triangle_margin;
-
-    bool meets(const CullBox& box, double relative_margin) const;
-
     Vec3d origin_, direction_;  // direction scaled to a largest component of 1
 };
 
@@ -70,7 +64,7 @@ private:
     template <typename Visit>
     void descend(const Line& line, std::size_t level, std::size_t first, std::size_t end, Visit& visit) const {
         for (std::size_t i = first; i < end; ++i) {
-            if (!line.may_meet_group(levels_[level][i])) continue;
+            if (!line.may_meet(levels_[level][i])) continue;
             const std::size_t child = i * block_size;
             if (level == 0) {
                 for (std::size_t t = child; t < block_end(child, triangles_.size()); ++t) visit(triangles_[t]);

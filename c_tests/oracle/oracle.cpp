@@ -16,12 +16,6 @@
 namespace harness {
 namespace {
 
-CullBox box_of(const Triangle& triangle) {
-    BoxBuilder builder;
-    builder.add(triangle);
-    return builder.box();
-}
-
 bool signs_are_known(const std::array<EdgeEstimate, 3>& edges) {
     return std::all_of(edges.begin(), edges.end(), [](const EdgeEstimate& edge) { return edge.sign_is_known(); });
 }
@@ -49,7 +43,7 @@ void allow_depths(Candidate& candidate, const RayFrame& frame, const Triangle& t
 }
 
 /// Nothing for a triangle that neither exact arithmetic nor f32 could take for hit.
-std::optional<Candidate> classify(const RayFrame& frame, const Line& line, const StoredTriangle& stored) {
+std::optional<Candidate> classify(const RayFrame& frame, const StoredTriangle& stored) {
     const Triangle triangle = frame.rename(stored.vertices);
     const auto edges = estimate_edges(frame, triangle);
     if (!edges) return std::nullopt;
@@ -57,8 +51,7 @@ std::optional<Candidate> classify(const RayFrame& frame, const Line& line, const
     const ExactPair pair(frame, triangle);
     const bool exact_hit = is_hit(signs_are_known(*edges) ? std::array{(*edges)[0].sign(), (*edges)[1].sign(), (*edges)[2].sign()}
                                                           : pair.edge_signs());
-    // Edges may pass the ray beyond the corner where they meet, as those of a needle do.
-    if (!exact_hit && (has_zero_area(triangle) || !line.may_meet_triangle(box_of(stored.vertices)))) return std::nullopt;
+    if (!exact_hit && has_zero_area(triangle)) return std::nullopt;
 
     const bool in_band = std::any_of(edges->begin(), edges->end(), [](const EdgeEstimate& edge) { return edge.in_band(); });
     Candidate candidate{stored.geometry_id, stored.primitive_id, exact_hit, in_band, infinity, infinity, -infinity, infinity};
@@ -80,15 +73,14 @@ void sort_by_t(std::vector<Candidate>& candidates) {
     });
 }
 
-/// The candidates among the triangles that for_each(line, visit) visits.
+/// The candidates among the triangles that for_each(visit) visits, none of a ray that is no line.
 template <typename ForEach>
 std::vector<Candidate> collect(const GnomonRay& ray, ForEach&& for_each) {
     const RayFrame frame(ray);
     if (!frame.is_line()) return {};
-    const Line line(ray);
     std::vector<Candidate> found;
-    for_each(line, [&](const StoredTriangle& triangle) {
-        if (const auto candidate = classify(frame, line, triangle)) found.push_back(*candidate);
+    for_each([&](const StoredTriangle& triangle) {
+        if (const auto candidate = classify(frame, triangle)) found.push_back(*candidate);
     });
     sort_by_t(found);
     return found;
@@ -105,11 +97,11 @@ Oracle::Oracle(const Scene& scene) : state_(new State{scene, CullTree(scene)}) {
 Oracle::~Oracle() = default;
 
 std::vector<Candidate> Oracle::candidates(const GnomonRay& ray) const {
-    return collect(ray, [&](const Line& line, auto&& visit) { state_->tree.for_each_near(line, visit); });
+    return collect(ray, [&](auto&& visit) { state_->tree.for_each_near(Line(ray), visit); });
 }
 
 std::vector<Candidate> Oracle::candidates_unculled(const GnomonRay& ray) const {
-    return collect(ray, [&](const Line&, auto&& visit) {
+    return collect(ray, [&](auto&& visit) {
         for (const StoredTriangle& triangle : state_->tree.triangles()) visit(triangle);
     });
 }
