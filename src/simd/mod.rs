@@ -1,17 +1,72 @@
-//! Instruction sets. Knows nothing of rays.
+//! Eight floats at a time on every instruction set. Knows nothing of rays.
+//!
+//! A zero-sized token stands for an instruction set; it can be had only where the CPU has the instructions, so
+//! holding one is the proof. Code that is generic over [`Simd`] is inlined into one frame per instruction set
+//! ([`Simd::vectorize`]), where the compiler may use the instructions: every function between the frame and the
+//! operations must be `#[inline(always)]`, or registers travel through memory.
+#![expect(unsafe_code, reason = "the door to std::arch: intrinsics are called here and nowhere else")]
 
-/// An instruction set, as a cap on what a scene's queries may use. The kernels built so far are scalar on every CPU.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Isa {
-    /// The best that the CPU has.
-    #[default]
-    Auto,
-    /// No vector instructions beyond what the compiler's baseline has.
-    Scalar,
-    /// SSE4.2.
-    Sse42,
-    /// AVX2 and FMA.
-    Avx2,
-    /// AVX-512 F, VL, DQ and BW.
-    Avx512,
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod isa;
+mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod sse42;
+#[cfg(test)]
+mod tests;
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx2::Avx2;
+pub use isa::Isa;
+pub(crate) use scalar::Scalar;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use sse42::Sse42;
+
+/// How many floats an operation works on.
+pub(crate) const LANES: usize = 8;
+
+/// Work that is generic over the instruction set.
+pub(crate) trait SimdKernel {
+    type Output;
+    /// Must be `#[inline(always)]`.
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
+}
+
+/// Operations on eight floats, each rounded once like the scalar one. Masks have bit `i` for lane `i`.
+pub(crate) trait Simd: Copy + Send + Sync {
+    type F32x8: Copy;
+
+    /// Whether [`Simd::mul_sub`] rounds once. It is for bounds only, where a rounding more or less does not show.
+    const IS_FUSED: bool;
+
+    /// Runs a kernel where the compiler may use the instruction set.
+    fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output;
+
+    fn splat(self, value: f32) -> Self::F32x8;
+    fn load(self, values: &[f32; LANES]) -> Self::F32x8;
+    fn store(self, a: Self::F32x8) -> [f32; LANES];
+    fn add(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    fn sub(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    fn mul(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// `a * b - c`.
+    fn mul_sub(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
+    /// The lesser; `b` where either is NaN or both are equal.
+    fn min(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// The greater; `b` where either is NaN or both are equal.
+    fn max(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// `a < b`; not where either is NaN.
+    fn less(self, a: Self::F32x8, b: Self::F32x8) -> u32;
+    /// `a <= b`; not where either is NaN.
+    fn less_or_equal(self, a: Self::F32x8, b: Self::F32x8) -> u32;
+}
+
+/// Asks for a value's cache lines ahead of its use.
+#[inline(always)]
+pub(crate) fn prefetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    for line in (0..size_of::<T>()).step_by(64) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a prefetch has no effect that a program can see, wherever it points.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>((&raw const *value).cast::<i8>().wrapping_add(line)) };
+    }
 }

@@ -1,0 +1,81 @@
+//! Plain arrays, which a compiler can vectorise for whatever CPU it compiles for.
+
+use super::{LANES, Simd, SimdKernel};
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scalar;
+
+#[inline(always)]
+fn lanewise(a: [f32; LANES], b: [f32; LANES], op: impl Fn(f32, f32) -> f32) -> [f32; LANES] {
+    std::array::from_fn(|lane| op(a[lane], b[lane]))
+}
+
+#[inline(always)]
+fn mask(a: [f32; LANES], b: [f32; LANES], holds: impl Fn(f32, f32) -> bool) -> u32 {
+    (0..LANES).fold(0, |bits, lane| bits | (u32::from(holds(a[lane], b[lane])) << lane))
+}
+
+impl Simd for Scalar {
+    type F32x8 = [f32; LANES];
+    const IS_FUSED: bool = false;
+
+    #[inline(always)]
+    fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
+        kernel.run(self)
+    }
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> [f32; LANES] {
+        [value; LANES]
+    }
+
+    #[inline(always)]
+    fn load(self, values: &[f32; LANES]) -> [f32; LANES] {
+        *values
+    }
+
+    #[inline(always)]
+    fn store(self, a: [f32; LANES]) -> [f32; LANES] {
+        a
+    }
+
+    #[inline(always)]
+    fn add(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
+        lanewise(a, b, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn sub(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
+        lanewise(a, b, |a, b| a - b)
+    }
+
+    #[inline(always)]
+    fn mul(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
+        lanewise(a, b, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, a: [f32; LANES], b: [f32; LANES], c: [f32; LANES]) -> [f32; LANES] {
+        self.sub(self.mul(a, b), c)
+    }
+
+    #[inline(always)]
+    fn min(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
+        lanewise(a, b, |a, b| if a < b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn max(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
+        lanewise(a, b, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn less(self, a: [f32; LANES], b: [f32; LANES]) -> u32 {
+        mask(a, b, |a, b| a < b)
+    }
+
+    #[inline(always)]
+    fn less_or_equal(self, a: [f32; LANES], b: [f32; LANES]) -> u32 {
+        mask(a, b, |a, b| a <= b)
+    }
+}

@@ -1,0 +1,90 @@
+//! Every operation on every instruction set against the scalar one, NaN, zeros, infinities and denormals among the
+//! operands.
+
+use super::*;
+
+/// All pairs of these, eight at a time.
+const VALUES: [f32; 16] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    1.5,
+    -2.75,
+    3.3e-39,
+    -1e-45,
+    f32::MIN_POSITIVE,
+    f32::MAX,
+    f32::MIN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    1e20,
+    0.1,
+];
+
+/// The results of all operations as bits, a NaN as one number.
+fn results<S: Simd>(simd: S) -> Vec<u32> {
+    struct All;
+    impl SimdKernel for All {
+        type Output = Vec<u32>;
+
+        fn run<S: Simd>(self, simd: S) -> Vec<u32> {
+            let mut results = Vec::new();
+            for shift in 0..VALUES.len() {
+                for half in 0..2 {
+                    let a: [f32; LANES] = std::array::from_fn(|lane| VALUES[half * LANES + lane]);
+                    let b: [f32; LANES] =
+                        std::array::from_fn(|lane| VALUES[(half * LANES + lane + shift) % VALUES.len()]);
+                    let (a, b) = (simd.load(&a), simd.load(&b));
+                    let lanes = [simd.add(a, b), simd.sub(a, b), simd.mul(a, b), simd.min(a, b), simd.max(a, b)];
+                    for value in lanes.into_iter().flat_map(|lanes| simd.store(lanes)) {
+                        results.push(if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() });
+                    }
+                    results.extend([simd.less(a, b), simd.less_or_equal(a, b)]);
+                }
+            }
+            results
+        }
+    }
+    simd.vectorize(All)
+}
+
+/// `a * b - c` for operands of which the fused and the two-step result are equal.
+fn exact_mul_sub<S: Simd>(simd: S) -> [f32; LANES] {
+    struct MulSub;
+    impl SimdKernel for MulSub {
+        type Output = [f32; LANES];
+
+        fn run<S: Simd>(self, simd: S) -> [f32; LANES] {
+            let a = simd.load(&[1.0, 2.0, -3.0, 0.5, 0.0, 7.0, f32::INFINITY, -1.0]);
+            simd.store(simd.mul_sub(a, simd.splat(4.0), simd.load(&[1.0, 8.0, 2.0, 0.25, 3.0, -1.0, 5.0, -4.0])))
+        }
+    }
+    simd.vectorize(MulSub)
+}
+
+const MUL_SUB: [f32; LANES] = [3.0, 0.0, -14.0, 1.75, -3.0, 29.0, f32::INFINITY, 0.0];
+
+#[test]
+fn every_instruction_set_computes_what_the_scalar_one_does() {
+    assert_eq!(exact_mul_sub(Scalar), MUL_SUB);
+    #[cfg(target_arch = "x86_64")]
+    {
+        if let Some(simd) = Sse42::detect() {
+            assert_eq!(results(simd), results(Scalar), "SSE4.2");
+            assert_eq!(exact_mul_sub(simd), MUL_SUB);
+        }
+        if let Some(simd) = Avx2::detect() {
+            assert_eq!(results(simd), results(Scalar), "AVX2");
+            assert_eq!(exact_mul_sub(simd), MUL_SUB);
+        }
+    }
+}
+
+#[test]
+fn a_cap_is_never_exceeded() {
+    assert_eq!(Isa::Scalar.resolve(), Isa::Scalar);
+    assert!(matches!(Isa::Sse42.resolve(), Isa::Scalar | Isa::Sse42));
+    assert!(matches!(Isa::Avx2.resolve(), Isa::Scalar | Isa::Sse42 | Isa::Avx2));
+}
