@@ -66,7 +66,7 @@
 // A bug in gnomon, or a machine that could not start threads. Nothing was changed.
 #define GNOMON_ERROR_INTERNAL 5u
 
-// The best there is for the scene: brute force for a handful of triangles, else the binary BVH.
+// The best there is for the scene: brute force for a handful of triangles, else the wide BVH.
 #define GNOMON_STRUCTURE_AUTO 0u
 
 // Every triangle is asked: for a handful, and as a reference.
@@ -87,7 +87,8 @@
 // Binary bounding volume hierarchy.
 #define GNOMON_STRUCTURE_BVH 6u
 
-// Bounding volume hierarchy with 8 children a node. Not built yet.
+// Bounding volume hierarchy with 8 children a node, tested at once by SSE4.2 or AVX2 where the CPU has it: the fastest
+// and smallest here. At most 2^28 triangles.
 #define GNOMON_STRUCTURE_WIDE_BVH 7u
 
 // Fastest build. BVH: split at the median of the longest axis.

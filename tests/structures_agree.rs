@@ -5,13 +5,24 @@ mod common;
 use std::mem::MaybeUninit;
 
 use common::{Mesh, Rng, meshes, rays_for};
-use gnomon::{BuildOptions, Hit, Precision, Quality, Ray, Scene, SceneBuilder, Structure};
+use gnomon::{BuildOptions, Hit, Isa, Precision, Quality, Ray, Scene, SceneBuilder, Structure};
 
-fn build(mesh: &Mesh, structure: Structure, quality: Quality, precision: Precision, thread_count: u32) -> Scene {
+fn build(mesh: &Mesh, options: BuildOptions) -> Scene {
     let mut builder = SceneBuilder::new();
     mesh.add_to(&mut builder);
-    let options = BuildOptions { structure, quality, precision, thread_count, ..BuildOptions::default() };
     builder.build(&options).expect("the mesh is valid")
+}
+
+/// Each structure in each quality and on each instruction set that makes a difference to it; the cap is no more than a
+/// cap, so on a small CPU some are the same.
+fn variants() -> Vec<BuildOptions> {
+    let of = |structure, quality, isa| BuildOptions { structure, quality, isa, ..BuildOptions::default() };
+    let qualities = [Quality::Low, Quality::Medium];
+    let binary = qualities.map(|quality| of(Structure::Bvh, quality, Isa::Auto));
+    let wide = [Isa::Scalar, Isa::Sse42, Isa::Avx2]
+        .into_iter()
+        .flat_map(|isa| qualities.map(|quality| of(Structure::WideBvh, quality, isa)));
+    binary.into_iter().chain(wide).collect()
 }
 
 /// Floats as bits, so that -0 and 0 differ, and a NaN would be seen.
@@ -51,10 +62,12 @@ fn every_structure_gives_the_hits_of_brute_force() {
     for mesh in meshes() {
         let rays = rays_for(&mesh, &mut Rng::new(7));
         for precision in [Precision::Fast, Precision::Accurate] {
-            let reference = build(&mesh, Structure::BruteForce, Quality::Medium, precision, 1);
+            let brute_force = BuildOptions { structure: Structure::BruteForce, precision, ..BuildOptions::default() };
+            let reference = build(&mesh, brute_force);
             let expected: Vec<Hit> = rays.iter().map(|ray| reference.intersect(ray)).collect();
-            for quality in [Quality::Low, Quality::Medium] {
-                let scene = build(&mesh, Structure::Bvh, quality, precision, 0);
+            for variant in variants() {
+                let variant = BuildOptions { precision, ..variant };
+                let scene = build(&mesh, variant);
                 let single: Vec<Hit> = rays.iter().map(|ray| scene.intersect(ray)).collect();
                 let forms =
                     [("single", single), ("batch 1", batch(&scene, &rays, 1)), ("batch 2", batch(&scene, &rays, 2))];
@@ -63,7 +76,7 @@ fn every_structure_gives_the_hits_of_brute_force() {
                         assert_eq!(
                             bits(hit),
                             bits(expected),
-                            "{} {quality:?} {precision:?} {form}: {hit:?} instead of {expected:?}; {}",
+                            "{} {variant:?} {form}: {hit:?} instead of {expected:?}; {}",
                             mesh.name,
                             hexadecimal(ray)
                         );
@@ -79,12 +92,15 @@ fn every_structure_gives_the_hits_of_brute_force() {
 fn thread_count_does_not_change_the_scene() {
     for mesh in meshes() {
         let rays = rays_for(&mesh, &mut Rng::new(11));
-        let one = build(&mesh, Structure::Bvh, Quality::Medium, Precision::Accurate, 1);
-        let two = build(&mesh, Structure::Bvh, Quality::Medium, Precision::Accurate, 2);
-        assert_eq!(one.stats().node_count, two.stats().node_count, "{}", mesh.name);
-        assert_eq!(one.stats().sah_cost.to_bits(), two.stats().sah_cost.to_bits(), "{}", mesh.name);
-        for ray in &rays {
-            assert_eq!(bits(&one.intersect(ray)), bits(&two.intersect(ray)), "{}: {}", mesh.name, hexadecimal(ray));
+        for variant in variants() {
+            let one = build(&mesh, BuildOptions { thread_count: 1, ..variant });
+            let two = build(&mesh, BuildOptions { thread_count: 2, ..variant });
+            assert_eq!(one.stats().node_count, two.stats().node_count, "{} {variant:?}", mesh.name);
+            assert_eq!(one.stats().sah_cost.to_bits(), two.stats().sah_cost.to_bits(), "{} {variant:?}", mesh.name);
+            for ray in &rays {
+                let (one, two) = (one.intersect(ray), two.intersect(ray));
+                assert_eq!(bits(&one), bits(&two), "{} {variant:?}: {}", mesh.name, hexadecimal(ray));
+            }
         }
     }
 }
@@ -92,18 +108,21 @@ fn thread_count_does_not_change_the_scene() {
 #[test]
 fn retrace_keeps_the_hit_at_the_closed_ends_and_loses_it_beyond() {
     for mesh in meshes() {
-        let scene = build(&mesh, Structure::Bvh, Quality::Medium, Precision::Accurate, 1);
-        for ray in rays_for(&mesh, &mut Rng::new(13)) {
-            let hit = scene.intersect(&ray);
-            if !hit.is_hit() {
-                continue;
+        for variant in variants() {
+            let scene = build(&mesh, variant);
+            for ray in rays_for(&mesh, &mut Rng::new(13)) {
+                let hit = scene.intersect(&ray);
+                if !hit.is_hit() {
+                    continue;
+                }
+                for (t_min, t_max) in [(ray.t_min, hit.t), (hit.t, ray.t_max), (hit.t, hit.t)] {
+                    let again = scene.intersect(&Ray { t_min, t_max, ..ray });
+                    let interval = format!("[{t_min:e}, {t_max:e}]");
+                    assert_eq!(bits(&again), bits(&hit), "{} {variant:?} {interval}; {}", mesh.name, hexadecimal(&ray));
+                }
+                let before = Ray { t_max: hit.t.next_down(), ..ray };
+                assert!(!scene.intersect(&before).is_hit(), "{} {variant:?}: {}", mesh.name, hexadecimal(&before));
             }
-            for (t_min, t_max) in [(ray.t_min, hit.t), (hit.t, ray.t_max), (hit.t, hit.t)] {
-                let again = scene.intersect(&Ray { t_min, t_max, ..ray });
-                assert_eq!(bits(&again), bits(&hit), "{}: [{t_min:e}, {t_max:e}]; {}", mesh.name, hexadecimal(&ray));
-            }
-            let before = Ray { t_max: hit.t.next_down(), ..ray };
-            assert!(!scene.intersect(&before).is_hit(), "{}: {}", mesh.name, hexadecimal(&before));
         }
     }
 }

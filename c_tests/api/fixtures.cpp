@@ -10,6 +10,7 @@ const std::vector<Named> kStructures{
     {"auto", GNOMON_STRUCTURE_AUTO},
     {"brute_force", GNOMON_STRUCTURE_BRUTE_FORCE},
     {"bvh", GNOMON_STRUCTURE_BVH},
+    {"wide_bvh", GNOMON_STRUCTURE_WIDE_BVH},
 };
 const std::vector<Named> kQualities{
     {"low", GNOMON_QUALITY_LOW},
@@ -24,7 +25,6 @@ const std::vector<Unbuilt> kUnbuilt{
     {"GNOMON_STRUCTURE_OCTREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_OCTREE},
     {"GNOMON_STRUCTURE_KD_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_KD_TREE},
     {"GNOMON_STRUCTURE_BSP_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_BSP_TREE},
-    {"GNOMON_STRUCTURE_WIDE_BVH", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_WIDE_BVH},
     {"GNOMON_QUALITY_HIGH", &GnomonBuildOptions::quality, GNOMON_QUALITY_HIGH},
     {"GNOMON_PRECISION_EXACT", &GnomonBuildOptions::precision, GNOMON_PRECISION_EXACT},
 };

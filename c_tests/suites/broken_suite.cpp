@@ -103,7 +103,7 @@ SceneHandle build(const Scene& scene, std::uint32_t invalid_triangles, GnomonSta
     }
     GnomonBuildOptions options;
     gnomon_build_options_init(&options);
-    options.structure = GNOMON_STRUCTURE_BVH;
+    options.structure = GNOMON_STRUCTURE_WIDE_BVH;
     options.invalid_triangles = invalid_triangles;
     GnomonScene* built = nullptr;
     status = gnomon_scene_build(builder.get(), &options, &built);

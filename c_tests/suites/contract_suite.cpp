@@ -17,7 +17,7 @@ namespace {
 
 Options options() {
     Options options;
-    options.structures = {GNOMON_STRUCTURE_BVH};
+    options.structures = {GNOMON_STRUCTURE_BVH, GNOMON_STRUCTURE_WIDE_BVH};
     options.precisions = {GNOMON_PRECISION_ACCURATE};
     options.qualities = {GNOMON_QUALITY_LOW, GNOMON_QUALITY_MEDIUM};
     options.ray_kinds = {"primary", "bounce", "shadow", "random"};

@@ -148,6 +148,7 @@ std::vector<std::unique_ptr<Backend>> backends(const Scene& scene) {
     for (const std::uint32_t precision : {GNOMON_PRECISION_FAST, GNOMON_PRECISION_ACCURATE}) {
         for (const std::uint32_t quality : {GNOMON_QUALITY_LOW, GNOMON_QUALITY_MEDIUM})
             made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_BVH, quality, precision));
+        made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_WIDE_BVH, GNOMON_QUALITY_MEDIUM, precision));
         if (scene.triangle_count() <= brute_force_triangles)
             made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_BRUTE_FORCE, GNOMON_QUALITY_MEDIUM, precision));
     }

@@ -3,12 +3,13 @@
 use super::brute_force::BruteForce;
 use super::bvh::{BinnedSah, Bvh, Median};
 use super::stats::Shape;
-use super::{BuildContext, BuildFailure, Quality, Structure};
+use super::{BuildContext, BuildFailure, Quality, Structure, WideBvh};
 use crate::geometry::{Aabb, Triangle};
 
 pub(crate) enum AnyAccel {
     BruteForce(BruteForce),
     Bvh(Bvh),
+    WideBvh(WideBvh),
 }
 
 impl AnyAccel {
@@ -16,18 +17,19 @@ impl AnyAccel {
         match self {
             Self::BruteForce(brute_force) => brute_force.shape(),
             Self::Bvh(bvh) => bvh.shape(),
+            Self::WideBvh(bvh) => bvh.shape(),
         }
     }
 }
 
-/// What `Auto` stands for. On random triangles the BVH takes 1.51, 1.28 and 1.12 times as long as brute force at 8, 16
+/// What `Auto` stands for. On random triangles the binary BVH takes 1.51, 1.28 and 1.12 times as long as brute force at 8, 16
 /// and 24 triangles; where they overlap less it catches up earlier.
 pub(crate) fn choose(asked: Structure, triangle_count: usize) -> Structure {
     const MOST_FOR_BRUTE_FORCE: usize = 16;
     match asked {
         _ if triangle_count == 0 => Structure::BruteForce,
         Structure::Auto if triangle_count <= MOST_FOR_BRUTE_FORCE => Structure::BruteForce,
-        Structure::Auto => Structure::Bvh,
+        Structure::Auto => Structure::WideBvh,
         other => other,
     }
 }
@@ -35,12 +37,11 @@ pub(crate) fn choose(asked: Structure, triangle_count: usize) -> Structure {
 /// What the choice names that has no builder yet.
 pub(crate) fn unsupported(structure: Structure, quality: Quality) -> Option<&'static str> {
     let structure = match structure {
-        Structure::Auto | Structure::BruteForce | Structure::Bvh => None,
+        Structure::Auto | Structure::BruteForce | Structure::Bvh | Structure::WideBvh => None,
         Structure::Grid => Some("GNOMON_STRUCTURE_GRID, the uniform grid,"),
         Structure::Octree => Some("GNOMON_STRUCTURE_OCTREE, the octree,"),
         Structure::KdTree => Some("GNOMON_STRUCTURE_KD_TREE, the kd-tree,"),
         Structure::BspTree => Some("GNOMON_STRUCTURE_BSP_TREE, the BSP tree,"),
-        Structure::WideBvh => Some("GNOMON_STRUCTURE_WIDE_BVH, the wide BVH,"),
     };
     structure.or_else(|| (quality == Quality::High).then_some("GNOMON_QUALITY_HIGH"))
 }
@@ -56,7 +57,10 @@ pub(crate) fn build(
     match (structure, quality) {
         (Structure::BruteForce, _) => BruteForce::build(triangles, context).map(AnyAccel::BruteForce),
         (Structure::Bvh, Quality::Low) => Bvh::build(triangles, bounds, &Median, context).map(AnyAccel::Bvh),
-        (Structure::Bvh, Quality::Medium) => Bvh::build(triangles, bounds, &BinnedSah, context).map(AnyAccel::Bvh),
+        (Structure::Bvh, Quality::Medium) => {
+            Bvh::build(triangles, bounds, &BinnedSah::FOR_SCALAR_LEAVES, context).map(AnyAccel::Bvh)
+        }
+        (Structure::WideBvh, _) => WideBvh::build(triangles, bounds, quality, context).map(AnyAccel::WideBvh),
         _ => unreachable!("{structure:?} of quality {quality:?} is refused before anything is built"),
     }
 }

@@ -30,11 +30,7 @@ impl BruteForce {
 impl Accel for BruteForce {
     fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
         let mut best = ClosestHit::none(ray);
-        test_triangles::<Q, P>(&self.triangles, 0, &TriangleRay::new(ray), ray.t_min, &mut best);
+        test_triangles::<Q, P>(&self.triangles, &TriangleRay::new(ray), ray.t_min, &mut best);
         best.found()
-    }
-
-    fn triangle(&self, hit: &ClosestHit) -> &Triangle {
-        &self.triangles[hit.index as usize]
     }
 }

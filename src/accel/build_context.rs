@@ -14,6 +14,11 @@ pub(crate) enum BuildFailure {
         needed: usize,
         limit: usize,
     },
+    /// More than the structure's references can tell apart.
+    TooManyTriangles {
+        count: usize,
+        limit: usize,
+    },
     /// The allocator refused.
     OutOfMemory {
         bytes: usize,

@@ -28,55 +28,41 @@ pub(crate) struct ClosestHit {
     pub(crate) t: f32,
     pub(crate) u: f32,
     pub(crate) v: f32,
-    pub(crate) geometry_id: u32,
-    pub(crate) primitive_id: u32,
-    /// Where the structure stores the triangle.
-    pub(crate) index: u32,
+    pub(crate) triangle: Triangle,
 }
 
 impl ClosestHit {
     /// Nothing yet: whatever lies in the interval is better, a hit at `t_max` itself too.
     pub(crate) fn none(ray: &Ray) -> Self {
-        Self { t: ray.t_max, u: 0.0, v: 0.0, geometry_id: INVALID_ID, primitive_id: INVALID_ID, index: INVALID_ID }
+        Self { t: ray.t_max, u: 0.0, v: 0.0, triangle: Triangle::new([[0.0; 3]; 3], INVALID_ID, INVALID_ID) }
     }
 
     pub(crate) fn found(self) -> Option<Self> {
-        (self.geometry_id != INVALID_ID).then_some(self)
+        (self.triangle.geometry_id != INVALID_ID).then_some(self)
     }
 
-    fn is_beaten_by(&self, hit: &TriangleHit, triangle: &Triangle) -> bool {
-        hit.t < self.t
-            || (hit.t == self.t
-                && (triangle.geometry_id, triangle.primitive_id) < (self.geometry_id, self.primitive_id))
+    /// Keeps the hit if it is better, and says so.
+    #[inline(always)]
+    pub(crate) fn improve(&mut self, hit: &TriangleHit, triangle: &Triangle) -> bool {
+        let ids = |triangle: &Triangle| (triangle.geometry_id, triangle.primitive_id);
+        let is_better = hit.t < self.t || (hit.t == self.t && ids(triangle) < ids(&self.triangle));
+        if is_better {
+            *self = Self { t: hit.t, u: hit.u, v: hit.v, triangle: *triangle };
+        }
+        is_better
     }
 }
 
-/// Tests the triangles, the first of which the structure stores at `first_index`, and keeps the best hit. True ends
-/// the query.
+/// Tests the triangles and keeps the best hit. True ends the query.
 #[inline(always)]
 pub(crate) fn test_triangles<Q: Query, P: PrecisionMode>(
     triangles: &[Triangle],
-    first_index: u32,
     ray: &TriangleRay,
     t_min: f32,
     best: &mut ClosestHit,
 ) -> bool {
-    for (index, triangle) in (first_index..).zip(triangles) {
-        let interval = Interval { t_min, t_max: best.t };
-        let Some(hit) = ray.hit::<P>(triangle, interval) else { continue };
-        if best.is_beaten_by(&hit, triangle) {
-            *best = ClosestHit {
-                t: hit.t,
-                u: hit.u,
-                v: hit.v,
-                geometry_id: triangle.geometry_id,
-                primitive_id: triangle.primitive_id,
-                index,
-            };
-            if Q::FIRST_HIT_ENDS {
-                return true;
-            }
-        }
-    }
-    false
+    triangles.iter().any(|triangle| {
+        let hit = ray.hit::<P>(triangle, Interval { t_min, t_max: best.t });
+        hit.is_some_and(|hit| best.improve(&hit, triangle)) && Q::FIRST_HIT_ENDS
+    })
 }

@@ -6,11 +6,13 @@ mod build_context;
 mod bvh;
 mod leaf;
 mod stats;
+mod wide_bvh;
 
 pub(crate) use any_accel::{AnyAccel, build, choose, unsupported};
 pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
 pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Query};
 pub use stats::{Precision, Quality, Stats, Structure};
+pub(crate) use wide_bvh::{Vectorized, WideBvh};
 
 use crate::geometry::{PrecisionMode, Ray};
 
@@ -19,7 +21,4 @@ use crate::geometry::{PrecisionMode, Ray};
 pub(crate) trait Accel {
     /// The closest hit, or any, of a valid ray.
     fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit>;
-
-    /// The stored triangle that a hit names.
-    fn triangle(&self, hit: &ClosestHit) -> &crate::geometry::Triangle;
 }

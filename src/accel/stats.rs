@@ -3,7 +3,7 @@
 /// A structure, as asked for and as built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Structure {
-    /// The best there is for the scene: brute force for a handful of triangles, else the binary BVH.
+    /// The best there is for the scene: brute force for a handful of triangles, else the wide BVH.
     #[default]
     Auto,
     /// Every triangle is asked.

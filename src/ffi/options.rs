@@ -8,7 +8,7 @@ use crate::accel::{Precision, Quality, Structure};
 use crate::scene::{BuildOptions, InvalidTriangles};
 use crate::simd::Isa;
 
-/// The best there is for the scene: brute force for a handful of triangles, else the binary BVH.
+/// The best there is for the scene: brute force for a handful of triangles, else the wide BVH.
 pub const GNOMON_STRUCTURE_AUTO: u32 = 0;
 /// Every triangle is asked: for a handful, and as a reference.
 pub const GNOMON_STRUCTURE_BRUTE_FORCE: u32 = 1;
@@ -22,7 +22,8 @@ pub const GNOMON_STRUCTURE_KD_TREE: u32 = 4;
 pub const GNOMON_STRUCTURE_BSP_TREE: u32 = 5;
 /// Binary bounding volume hierarchy.
 pub const GNOMON_STRUCTURE_BVH: u32 = 6;
-/// Bounding volume hierarchy with 8 children a node. Not built yet.
+/// Bounding volume hierarchy with 8 children a node, tested at once by SSE4.2 or AVX2 where the CPU has it: the fastest
+/// and smallest here. At most 2^28 triangles.
 pub const GNOMON_STRUCTURE_WIDE_BVH: u32 = 7;
 
 /// Fastest build. BVH: split at the median of the longest axis.

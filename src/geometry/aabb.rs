@@ -23,6 +23,11 @@ impl Aabb {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
     }
 
+    /// Whether all of `inner` is inside.
+    pub fn contains(&self, inner: &Self) -> bool {
+        self.lower.cmple(inner.lower).all() && self.upper.cmpge(inner.upper).all()
+    }
+
     /// The largest distance along an axis from `point` to any point of the box. `-inf` or NaN for the empty box.
     fn reach_from(&self, point: Vec3) -> f32 {
         (self.upper - point).max(point - self.lower).max_element()
@@ -46,18 +51,19 @@ impl Aabb {
 /// the ray is refused exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SlabRay {
-    origin: [f32; 3],
+    pub(crate) origin: [f32; 3],
     /// `1 / d`, with a signed infinity where `d` is 0. NaN where `d` is so small beside the other components that
     /// the quotient overflows: such a slab then decides nothing, because comparisons ignore a NaN.
-    inverse: [f32; 3],
-    slack: [f32; 3],
+    pub(crate) inverse: [f32; 3],
+    pub(crate) slack: [f32; 3],
     /// 1 where the direction is negative, so that the upper plane is the near one.
-    near_side: [usize; 3],
+    pub(crate) near_side: [usize; 3],
     /// Box distances count in lengths of the scaled direction: multiply a `t` by this.
     pub(crate) time_scale: f32,
 }
 
 impl SlabRay {
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray, scene_bounds: &Aabb) -> Self {
         const LEAST_UNSCALED: f32 = 1.0 / MOST_UNSCALED;
         const MOST_UNSCALED: f32 = (1u64 << 60) as f32;
@@ -86,6 +92,23 @@ impl SlabRay {
             near_side: direction.map(|d| usize::from(d.is_sign_negative())),
             time_scale: 1.0 / scale,
         }
+    }
+
+    /// Whether no component of the direction is zero, or as good as zero beside the others.
+    pub(crate) fn is_oblique(&self) -> bool {
+        self.inverse.iter().all(|inverse| inverse.is_finite())
+    }
+
+    /// `(near, far)` for each axis, such that `plane * inverse - near` is no later than the near plane, widened by
+    /// the slack, and `plane * inverse - far` no earlier than the far one, fused or not. For oblique rays.
+    ///
+    /// `origin * inverse` and the sum with the slack round once each, before they cancel against the plane's product.
+    pub(crate) fn fused_offsets(&self) -> [(f32, f32); 3] {
+        std::array::from_fn(|axis| {
+            let offset = self.origin[axis] * self.inverse[axis];
+            let slack = self.slack[axis] + gamma(4) * offset.abs();
+            (offset + slack, offset - slack)
+        })
     }
 
     /// Where the ray enters the box given as `[[lower, upper]; 3]`, if it does so within `[t_min, t_max]` (all in

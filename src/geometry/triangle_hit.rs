@@ -29,11 +29,11 @@ pub(crate) struct TriangleHit {
 /// A ray made ready for triangle tests.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TriangleRay {
-    pub(super) origin: [f32; 3],
+    pub(crate) origin: [f32; 3],
     pub(super) direction: [f32; 3],
     /// x, y and z of the sheared space, as axes of the scene's.
-    pub(super) axes: [usize; 3],
-    shear: [f32; 2],
+    pub(crate) axes: [usize; 3],
+    pub(crate) shear: [f32; 2],
 }
 
 /// Edge functions: the weights of the three vertices, up to a common factor.
@@ -76,6 +76,7 @@ pub(crate) struct Accurate;
 
 impl TriangleRay {
     /// Expects a valid ray.
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
         let direction = ray.direction.to_array();
         let [x, y, z] = direction.map(f32::abs);

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::builder::Geometry;
 use super::flatten::{Flat, flatten};
 use super::{BuildError, BuildOptions, Scene, threads};
-use crate::accel::{self, BuildContext, Precision, Stats, Watch};
+use crate::accel::{self, BuildContext, Precision, Stats, Structure, Watch};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
@@ -40,6 +40,8 @@ fn build_with(
     let structure = accel::choose(options.structure, reference_count);
     let accel = accel::build(structure, options.quality, triangles, bounds, context)?;
     let shape = accel.shape();
+    // Only the wide BVH has kernels beyond the scalar one.
+    let isa = if structure == Structure::WideBvh { options.isa.resolve() } else { Isa::Scalar };
     let stats = Stats {
         triangle_count: (added_count - skipped_count) as u64,
         node_count: shape.node_count as u64,
@@ -49,7 +51,7 @@ fn build_with(
         depth: shape.depth,
         structure,
         precision: options.precision,
-        isa: Isa::Scalar,
+        isa,
         bytes: (shape.node_bytes + shape.leaf_bytes + size_of::<Scene>()) as u64,
         node_bytes: shape.node_bytes as u64,
         leaf_bytes: shape.leaf_bytes as u64,
@@ -57,5 +59,5 @@ fn build_with(
         build_seconds: start.elapsed().as_secs_f64(),
         sah_cost: shape.sah_cost,
     };
-    Ok(Scene { accel, precision: options.precision, bounds, stats })
+    Ok(Scene { accel, precision: options.precision, isa, bounds, stats })
 }

@@ -53,6 +53,7 @@ impl From<BuildFailure> for BuildError {
         match failure {
             BuildFailure::Cancelled => Self::Cancelled,
             BuildFailure::OverLimit { needed, limit } => Self::OverMemoryLimit { needed, limit },
+            BuildFailure::TooManyTriangles { count, limit } => Self::TooManyInScene { what: "triangles", count, limit },
             BuildFailure::OutOfMemory { bytes } => Self::OutOfMemory { bytes },
         }
     }

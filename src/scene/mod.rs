@@ -16,11 +16,13 @@ pub use options::{BuildOptions, InvalidTriangles};
 
 use crate::accel::{AnyAccel, Precision, Stats};
 use crate::geometry::Aabb;
+use crate::simd::Isa;
 
 /// An immutable scene; any number of threads may query it.
 pub struct Scene {
     accel: AnyAccel,
     precision: Precision,
+    isa: Isa,
     bounds: Aabb,
     stats: Stats,
 }

@@ -1,8 +1,11 @@
 //! Queries: the one place where a scene's structure and precision are looked at, once a call.
 
 use super::Scene;
-use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Precision};
+use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Precision, Vectorized, WideBvh};
 use crate::geometry::{Accurate, Fast, Hit, INVALID_ID, PrecisionMode, Ray};
+#[cfg(target_arch = "x86_64")]
+use crate::simd::{Avx2, Sse42};
+use crate::simd::{Isa, Scalar};
 
 /// Work that runs on whatever structure and precision a scene has.
 pub(super) trait Kernel {
@@ -28,7 +31,22 @@ impl Scene {
         match &self.accel {
             AnyAccel::BruteForce(brute_force) => self.dispatch_precision(kernel, brute_force),
             AnyAccel::Bvh(bvh) => self.dispatch_precision(kernel, bvh),
+            AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
         }
+    }
+
+    #[inline(always)]
+    fn dispatch_isa<K: Kernel>(&self, kernel: K, bvh: &WideBvh) -> K::Output {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some(simd) = Avx2::detect().filter(|_| self.isa == Isa::Avx2) {
+                return self.dispatch_precision(kernel, &Vectorized { bvh, simd });
+            }
+            if let Some(simd) = Sse42::detect().filter(|_| self.isa == Isa::Sse42) {
+                return self.dispatch_precision(kernel, &Vectorized { bvh, simd });
+            }
+        }
+        self.dispatch_precision(kernel, &Vectorized { bvh, simd: Scalar })
     }
 
     #[inline(always)]
@@ -63,7 +81,7 @@ impl Question for ClosestOf {
         if !ray.is_valid() {
             return Hit::MISS;
         }
-        accel.query::<Closest, P>(ray).map_or(Hit::MISS, |found| complete(accel, &found))
+        accel.query::<Closest, P>(ray).map_or(Hit::MISS, complete)
     }
 }
 
@@ -76,14 +94,14 @@ impl Question for Occlusion {
     }
 }
 
-fn complete<A: Accel>(accel: &A, found: &ClosestHit) -> Hit {
+fn complete(found: ClosestHit) -> Hit {
     Hit {
         t: found.t,
         u: found.u,
         v: found.v,
-        normal: accel.triangle(found).normal(),
-        primitive_id: found.primitive_id,
-        geometry_id: found.geometry_id,
+        normal: found.triangle.normal(),
+        primitive_id: found.triangle.primitive_id,
+        geometry_id: found.triangle.geometry_id,
         instance_id: INVALID_ID,
     }
 }

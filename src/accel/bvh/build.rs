@@ -92,7 +92,7 @@ impl NodeExtent {
 /// Decides about a node: reorders its references and says where the second child's begin, or `None` for a leaf.
 pub(crate) trait SplitRule: Sync {
     /// Nodes with more triangles are always split.
-    const MOST_IN_LEAF: usize;
+    fn most_in_leaf(&self) -> usize;
 
     fn split(&self, references: &mut [Reference], extent: &NodeExtent, context: &BuildContext) -> Option<usize>;
 }
@@ -214,7 +214,7 @@ impl<R: SplitRule> Subtree<'_, R> {
             return None;
         }
         let middle = if level < LAST_FREE_LEVEL { self.rule.split(references, extent, self.context) } else { None };
-        middle.or_else(|| (count > R::MOST_IN_LEAF).then_some(count / 2))
+        middle.or_else(|| (count > self.rule.most_in_leaf()).then_some(count / 2))
     }
 }
 

@@ -4,7 +4,7 @@
 //! diagonal triangles, many triangles in one place.
 
 mod build;
-mod node;
+pub(super) mod node;
 mod split_median;
 mod split_sah;
 mod traverse;
@@ -22,12 +22,12 @@ use super::{Accel, BuildContext, BuildFailure, ClosestHit, Query};
 use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
 
 pub(crate) struct Bvh {
-    bounds: Aabb,
-    root: Node,
-    /// In depth-first order.
-    pairs: Vec<NodePair>,
+    pub(super) bounds: Aabb,
+    pub(super) root: Node,
+    /// A node's children come after it.
+    pub(super) pairs: Vec<NodePair>,
     /// In the order of the leaves.
-    triangles: Vec<Triangle>,
+    pub(super) triangles: Vec<Triangle>,
     depth: u32,
     sah_cost: f64,
 }
@@ -62,9 +62,5 @@ impl Bvh {
 impl Accel for Bvh {
     fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
         self.traverse::<Q, P>(ray)
-    }
-
-    fn triangle(&self, hit: &ClosestHit) -> &Triangle {
-        &self.triangles[hit.index as usize]
     }
 }

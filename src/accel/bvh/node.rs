@@ -5,45 +5,45 @@ use crate::geometry::Aabb;
 /// 32 bytes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(super) struct Node {
+pub(in crate::accel) struct Node {
     /// `[lower, upper]` for each axis.
-    pub(super) planes: [[f32; 2]; 3],
+    pub(in crate::accel) planes: [[f32; 2]; 3],
     /// A leaf's first triangle, else the pair of children.
-    pub(super) first: u32,
+    pub(in crate::accel) first: u32,
     /// How many triangles a leaf has; 0 for a node with children.
-    pub(super) count: u32,
+    pub(in crate::accel) count: u32,
 }
 
 /// Two siblings: 64 bytes, one cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(super) struct NodePair {
-    pub(super) children: [Node; 2],
+pub(in crate::accel) struct NodePair {
+    pub(in crate::accel) children: [Node; 2],
 }
 
 const _: () = assert!(size_of::<Node>() == 32);
 const _: () = assert!(size_of::<NodePair>() == 64);
 
 /// The most levels that a builder makes, and so what a traversal's stack holds: one sibling a level.
-pub(super) const MOST_LEVELS: usize = 96;
+pub(in crate::accel) const MOST_LEVELS: usize = 96;
 
 impl Node {
-    pub(super) fn new(bounds: &Aabb, first: u32, count: u32) -> Self {
+    pub(in crate::accel) fn new(bounds: &Aabb, first: u32, count: u32) -> Self {
         let (lower, upper) = (bounds.lower.to_array(), bounds.upper.to_array());
         Self { planes: std::array::from_fn(|axis| [lower[axis], upper[axis]]), first, count }
     }
 
-    pub(super) fn is_leaf(&self) -> bool {
+    pub(in crate::accel) fn is_leaf(&self) -> bool {
         self.count != 0
     }
 
     /// Half the surface of the box, in `f64` so that no scene overflows it.
-    pub(super) fn half_area(&self) -> f64 {
+    pub(in crate::accel) fn half_area(&self) -> f64 {
         let [x, y, z] = self.planes.map(|[lower, upper]| f64::from(upper) - f64::from(lower));
         x * y + y * z + z * x
     }
 }
 
 impl NodePair {
-    pub(super) const EMPTY: Self = Self { children: [Node { planes: [[0.0; 2]; 3], first: 0, count: 0 }; 2] };
+    pub(in crate::accel) const EMPTY: Self = Self { children: [Node { planes: [[0.0; 2]; 3], first: 0, count: 0 }; 2] };
 }

@@ -6,10 +6,12 @@ use crate::accel::BuildContext;
 pub(crate) struct Median;
 
 impl SplitRule for Median {
-    const MOST_IN_LEAF: usize = 5;
+    fn most_in_leaf(&self) -> usize {
+        5
+    }
 
     fn split(&self, references: &mut [Reference], extent: &NodeExtent, _context: &BuildContext) -> Option<usize> {
-        if references.len() <= Self::MOST_IN_LEAF {
+        if references.len() <= self.most_in_leaf() {
             return None;
         }
         let axis = (extent.bounds.upper - extent.bounds.lower).truncate().max_position();

@@ -14,12 +14,30 @@ pub(super) const TRIANGLE_COST: f64 = 1.0;
 
 const MOST_BINS: usize = 32;
 
-pub(crate) struct BinnedSah;
+/// Where splitting ends.
+pub(crate) struct BinnedSah {
+    /// Nodes with more triangles are always split.
+    most_in_leaf: usize,
+    /// Nodes with no more than these never are; between, the expected cost decides.
+    least_split: usize,
+}
+
+impl BinnedSah {
+    /// Leaves whose triangles are tested one by one.
+    pub(crate) const FOR_SCALAR_LEAVES: Self = Self { most_in_leaf: 8, least_split: 1 };
+    /// Leaves to be merged into such as are tested at once.
+    pub(crate) const FOR_WIDE_LEAVES: Self = Self { most_in_leaf: 4, least_split: 4 };
+}
 
 impl SplitRule for BinnedSah {
-    const MOST_IN_LEAF: usize = 8;
+    fn most_in_leaf(&self) -> usize {
+        self.most_in_leaf
+    }
 
     fn split(&self, references: &mut [Reference], extent: &NodeExtent, context: &BuildContext) -> Option<usize> {
+        if references.len() <= self.least_split {
+            return None;
+        }
         let binning = Binning::new(&extent.centres, references.len());
         let bins = reduce_chunks(references, context, |chunk| Bins::of(chunk, &binning), Bins::merge);
         let best = bins.cheapest_plane(&binning)?;
@@ -27,8 +45,7 @@ impl SplitRule for BinnedSah {
         let split_cost = NODE_COST as f32 * extent.bounds.half_area() + TRIANGLE_COST as f32 * best.cost;
         let leaf_cost = TRIANGLE_COST as f32 * extent.bounds.half_area() * references.len() as f32;
         // Boxes of no area, or of one beyond f32, make the comparison false: then the leaf's size alone decides.
-        if references.len() <= Self::MOST_IN_LEAF
-            && split_cost.partial_cmp(&leaf_cost) != Some(std::cmp::Ordering::Less)
+        if references.len() <= self.most_in_leaf && split_cost.partial_cmp(&leaf_cost) != Some(std::cmp::Ordering::Less)
         {
             return None;
         }

@@ -1,5 +1,7 @@
 //! Front to back with a stack: the nearer child first, the other one later if it still can matter.
 
+use arrayvec::ArrayVec;
+
 use super::Bvh;
 use super::node::{MOST_LEVELS, Node};
 use crate::accel::leaf::{ClosestHit, Query, test_triangles};
@@ -28,13 +30,12 @@ impl Bvh {
         let mut t_max = ray.t_max * slabs.time_scale;
         let mut best = ClosestHit::none(ray);
 
-        let mut stack = [Pending { enter: 0.0, first: 0, count: 0 }; MOST_LEVELS];
-        let mut stack_len = 0;
+        let mut stack = ArrayVec::<Pending, MOST_LEVELS>::new_const();
         let mut node = Pending::new(&self.root, slabs.enter(&self.root.planes, t_min, t_max)?);
         loop {
             if node.count != 0 {
                 let triangles = &self.triangles[node.first as usize..][..node.count as usize];
-                if test_triangles::<Q, P>(triangles, node.first, &triangle_ray, ray.t_min, &mut best) {
+                if test_triangles::<Q, P>(triangles, &triangle_ray, ray.t_min, &mut best) {
                     break;
                 }
                 t_max = best.t * slabs.time_scale;
@@ -46,8 +47,7 @@ impl Bvh {
                     (Some(at_left), Some(at_right)) => {
                         let (left, right) = (Pending::new(left, at_left), Pending::new(right, at_right));
                         let (near, far) = if at_right < at_left { (right, left) } else { (left, right) };
-                        stack[stack_len] = far;
-                        stack_len += 1;
+                        stack.push(far);
                         node = near;
                         continue;
                     }
@@ -64,12 +64,9 @@ impl Bvh {
             }
             // A node that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
             node = loop {
-                if stack_len == 0 {
-                    return best.found();
-                }
-                stack_len -= 1;
-                if stack[stack_len].enter <= t_max {
-                    break stack[stack_len];
+                let Some(pending) = stack.pop() else { return best.found() };
+                if pending.enter <= t_max {
+                    break pending;
                 }
             };
         }

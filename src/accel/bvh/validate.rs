@@ -13,7 +13,7 @@ impl Bvh {
         while let Some((node, parent, level)) = pending.pop() {
             deepest = deepest.max(level);
             let bounds = bounds_of(&node);
-            if !contains(&parent, &bounds) {
+            if !parent.contains(&bounds) {
                 return Err(format!("the box {bounds:?} is not inside its parent's {parent:?}"));
             }
             if !node.is_leaf() {
@@ -23,7 +23,7 @@ impl Bvh {
             }
             for index in node.first..node.first + node.count {
                 let triangle = self.triangles.get(index as usize).ok_or_else(|| format!("no triangle {index}"))?;
-                if !contains(&bounds, &triangle.bounds()) {
+                if !bounds.contains(&triangle.bounds()) {
                     return Err(format!("triangle {index} is not inside its leaf's box {bounds:?}"));
                 }
                 if std::mem::replace(&mut triangle_seen[index as usize], true) {
@@ -43,8 +43,4 @@ impl Bvh {
 
 fn bounds_of(node: &Node) -> Aabb {
     Aabb { lower: node.planes.map(|[lower, _]| lower).into(), upper: node.planes.map(|[_, upper]| upper).into() }
-}
-
-fn contains(outer: &Aabb, inner: &Aabb) -> bool {
-    outer.lower.cmple(inner.lower).all() && outer.upper.cmpge(inner.upper).all()
 }

@@ -1,0 +1,120 @@
+//! The triangles of all leaves, each leaf by coordinate: what one load brings is one coordinate of all its triangles.
+
+use crate::accel::{BuildContext, BuildFailure, ClosestHit};
+use crate::geometry::Triangle;
+use crate::simd::LANES;
+
+/// Floats that a triangle takes: three vertices and an id.
+const WORDS: usize = 10;
+
+pub(super) struct Leaves {
+    /// A leaf of n triangles from the i-th on has the words from 10 i on: nine rows of n coordinates (x, y, z; first,
+    /// second, third vertex each), then n ids as bits. Eight words more at the end, so that the last row of the last
+    /// leaf can be loaded as eight.
+    words: Vec<f32>,
+    leaf_count: usize,
+    ids: Ids,
+}
+
+/// A leaf as a kernel reads it.
+#[derive(Clone, Copy)]
+pub(super) struct Leaf<'a> {
+    words: &'a [f32],
+    count: usize,
+}
+
+impl Leaves {
+    pub(super) fn reserve(triangle_count: usize, ids: Ids, context: &BuildContext) -> Result<Self, BuildFailure> {
+        let words = context.reserve(triangle_count * WORDS + LANES)?;
+        Ok(Self { words, leaf_count: 0, ids })
+    }
+
+    /// Appends a leaf and returns its first triangle's place.
+    pub(super) fn push(&mut self, triangles: &[Triangle]) -> usize {
+        let first = self.words.len() / WORDS;
+        for axis in 0..3 {
+            for corner in 0..3 {
+                self.words.extend(triangles.iter().map(|triangle| triangle.axes[axis][corner]));
+            }
+        }
+        self.words.extend(triangles.iter().map(|triangle| f32::from_bits(self.ids.joined(triangle))));
+        self.leaf_count += 1;
+        first
+    }
+
+    pub(super) fn finish(&mut self) {
+        self.words.extend([0.0; LANES]);
+    }
+
+    #[inline(always)]
+    pub(super) fn leaf(&self, (first, count): (usize, usize)) -> Leaf<'_> {
+        Leaf { words: &self.words[first * WORDS..][..9 * count + LANES], count }
+    }
+
+    pub(super) fn leaf_count(&self) -> usize {
+        self.leaf_count
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.words.as_slice()) + size_of_val(self.ids.starts.as_slice())
+    }
+
+    /// The hit with its triangle's own ids.
+    pub(super) fn resolve(&self, mut hit: ClosestHit) -> ClosestHit {
+        (hit.triangle.geometry_id, hit.triangle.primitive_id) = self.ids.separate(hit.triangle.primitive_id);
+        hit
+    }
+}
+
+impl<'a> Leaf<'a> {
+    /// One coordinate of one vertex of all triangles; what lies beyond the last one has no meaning.
+    #[inline(always)]
+    pub(super) fn row(&self, axis: usize, corner: usize) -> &'a [f32; LANES] {
+        let at = (3 * axis + corner) * self.count;
+        self.words[at..][..LANES].try_into().expect("the length is that of the array")
+    }
+
+    /// Bit `i` for triangle `i`.
+    #[inline(always)]
+    pub(super) fn mask(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+
+    /// With geometry and primitive joined into one number, in place of the primitive: [`Leaves::resolve`] separates
+    /// them.
+    #[inline(always)]
+    pub(super) fn triangle(&self, lane: usize) -> Triangle {
+        let word = |row: usize| self.words[row * self.count + lane];
+        let axes = std::array::from_fn(|axis| std::array::from_fn(|corner| word(3 * axis + corner)));
+        Triangle { axes, geometry_id: 0, primitive_id: word(9).to_bits() }
+    }
+}
+
+/// Geometry and primitive as one number, in the order of `(geometry_id, primitive_id)`.
+pub(super) struct Ids {
+    /// Where each geometry's numbers begin.
+    starts: Vec<u32>,
+}
+
+impl Ids {
+    /// For triangles in the order of their ids.
+    pub(super) fn new(triangles: &[Triangle]) -> Self {
+        let mut starts = vec![0];
+        let mut next = 0;
+        for triangle in triangles {
+            // Geometries without a triangle to hit begin where the next one does.
+            starts.resize(triangle.geometry_id as usize + 1, next);
+            next = starts[triangle.geometry_id as usize] + triangle.primitive_id + 1;
+        }
+        Self { starts }
+    }
+
+    fn joined(&self, triangle: &Triangle) -> u32 {
+        self.starts[triangle.geometry_id as usize] + triangle.primitive_id
+    }
+
+    fn separate(&self, id: u32) -> (u32, u32) {
+        let geometry = self.starts.partition_point(|&start| start <= id) - 1;
+        (geometry as u32, id - self.starts[geometry])
+    }
+}

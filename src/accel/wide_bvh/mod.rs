@@ -1,0 +1,78 @@
+//! Bounding volume hierarchy with eight children a node, tested at once; a leaf's triangles are too.
+//!
+//! Shines on everything that is unevenly spread, in less memory than the binary one. Fails where boxes overlap much.
+//! Source: Wald, Benthin, Boulos 2008, "Getting rid of packets: efficient SIMD single-ray traversal using
+//! multi-branching BVHs".
+
+mod collapse;
+mod leaves;
+mod node;
+mod traverse;
+#[cfg(any(test, debug_assertions))]
+mod validate;
+
+use leaves::Leaves;
+use node::{Child, WideNode};
+
+use super::bvh::{BinnedSah, Bvh, Median};
+use super::stats::Shape;
+use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
+use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
+use crate::simd::Simd;
+
+pub(crate) struct WideBvh {
+    bounds: Aabb,
+    root: Child,
+    nodes: Vec<WideNode>,
+    leaves: Leaves,
+    depth: u32,
+    sah_cost: f64,
+}
+
+impl WideBvh {
+    /// At least one triangle; `bounds` contains them all.
+    pub(crate) fn build(
+        triangles: Vec<Triangle>,
+        bounds: Aabb,
+        quality: Quality,
+        context: &BuildContext,
+    ) -> Result<Self, BuildFailure> {
+        let (count, limit) = (triangles.len(), Child::MOST_TRIANGLES);
+        if count > limit {
+            return Err(BuildFailure::TooManyTriangles { count, limit });
+        }
+        let ids = leaves::Ids::new(&triangles);
+        let binary = match quality {
+            Quality::Low => Bvh::build(triangles, bounds, &Median, context),
+            Quality::Medium | Quality::High => Bvh::build(triangles, bounds, &BinnedSah::FOR_WIDE_LEAVES, context),
+        }?;
+        let wide = collapse::collapse(binary, ids, context)?;
+        #[cfg(any(test, debug_assertions))]
+        wide.validate().expect("a builder keeps the tree's invariants");
+        Ok(wide)
+    }
+
+    pub(crate) fn shape(&self) -> Shape {
+        Shape {
+            node_count: self.nodes.len() + self.leaves.leaf_count(),
+            leaf_count: self.leaves.leaf_count(),
+            depth: self.depth,
+            node_bytes: size_of_val(self.nodes.as_slice()),
+            leaf_bytes: self.leaves.bytes(),
+            sah_cost: self.sah_cost,
+        }
+    }
+}
+
+/// The hierarchy as an instruction set queries it.
+pub(crate) struct Vectorized<'a, S> {
+    pub(crate) bvh: &'a WideBvh,
+    pub(crate) simd: S,
+}
+
+impl<S: Simd> Accel for Vectorized<'_, S> {
+    #[inline(always)]
+    fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
+        self.simd.vectorize(traverse::Traversal::<Q, P>::new(self.bvh, ray))
+    }
+}

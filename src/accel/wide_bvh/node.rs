@@ -1,0 +1,72 @@
+//! The tree as plain data.
+
+use crate::simd::LANES;
+
+/// A child: a node, or a leaf with its triangles.
+///
+/// Bit 31 says leaf. A leaf has the number of its triangles, less one, in bits 28 to 30, and its first triangle
+/// below; a node its index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub(super) struct Child(u32);
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+    const FIRST_BITS: u32 = 28;
+    /// How many triangles a leaf's 28 bits can tell apart.
+    pub(super) const MOST_TRIANGLES: usize = 1 << Self::FIRST_BITS;
+
+    pub(super) fn node(index: usize) -> Self {
+        debug_assert!(index < Self::LEAF as usize);
+        Self(index as u32)
+    }
+
+    pub(super) fn leaf(first: usize, count: usize) -> Self {
+        debug_assert!(first < Self::MOST_TRIANGLES && (1..=LANES).contains(&count));
+        Self(Self::LEAF | ((count as u32 - 1) << Self::FIRST_BITS) | first as u32)
+    }
+
+    #[inline(always)]
+    pub(super) fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    #[inline(always)]
+    pub(super) fn node_index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// A leaf's first triangle and the number of them.
+    #[inline(always)]
+    pub(super) fn triangles(self) -> (usize, usize) {
+        let first = self.0 & ((1 << Self::FIRST_BITS) - 1);
+        let count = ((self.0 >> Self::FIRST_BITS) & 7) + 1;
+        (first as usize, count as usize)
+    }
+}
+
+/// 256 bytes, four cache lines. An empty slot has a box that no ray meets, and any child.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct WideNode {
+    /// `[lower, upper]` for each axis, eight children each.
+    pub(super) planes: [[[f32; LANES]; 2]; 3],
+    pub(super) children: [Child; LANES],
+}
+
+const _: () = assert!(size_of::<WideNode>() == 256);
+
+impl WideNode {
+    pub(super) const EMPTY: Self = Self {
+        planes: [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3],
+        children: [Child(Child::LEAF); LANES],
+    };
+
+    pub(super) fn set(&mut self, slot: usize, planes: &[[f32; 2]; 3], child: Child) {
+        for (axis, [lower, upper]) in planes.iter().enumerate() {
+            self.planes[axis][0][slot] = *lower;
+            self.planes[axis][1][slot] = *upper;
+        }
+        self.children[slot] = child;
+    }
+}
