@@ -6,11 +6,13 @@ use crate::simd::LANES;
 
 /// Floats that a triangle takes: three vertices and an id.
 const WORDS: usize = 10;
+/// What a leaf reads at the most, its rows loaded as eight: so the compiler sees that every row is inside. The axis
+/// counts as 2 bits.
+const WINDOW: usize = (3 * 3 + 2) * LANES + LANES;
 
 pub(super) struct Leaves {
     /// A leaf of n triangles from the i-th on has the words from 10 i on: nine rows of n coordinates (x, y, z; first,
-    /// second, third vertex each), then n ids as bits. Eight words more at the end, so that the last row of the last
-    /// leaf can be loaded as eight.
+    /// second, third vertex each), then n ids as bits. More words at the end, so that the last leaf has a whole window.
     words: Vec<f32>,
     leaf_count: usize,
     ids: Ids,
@@ -19,13 +21,13 @@ pub(super) struct Leaves {
 /// A leaf as a kernel reads it.
 #[derive(Clone, Copy)]
 pub(super) struct Leaf<'a> {
-    words: &'a [f32],
+    words: &'a [f32; WINDOW],
     count: usize,
 }
 
 impl Leaves {
     pub(super) fn reserve(triangle_count: usize, ids: Ids, context: &BuildContext) -> Result<Self, BuildFailure> {
-        let words = context.reserve(triangle_count * WORDS + LANES)?;
+        let words = context.reserve(triangle_count * WORDS + WINDOW)?;
         Ok(Self { words, leaf_count: 0, ids })
     }
 
@@ -43,12 +45,13 @@ impl Leaves {
     }
 
     pub(super) fn finish(&mut self) {
-        self.words.extend([0.0; LANES]);
+        self.words.extend([0.0; WINDOW]);
     }
 
     #[inline(always)]
     pub(super) fn leaf(&self, (first, count): (usize, usize)) -> Leaf<'_> {
-        Leaf { words: &self.words[first * WORDS..][..9 * count + LANES], count }
+        let words = self.words[first * WORDS..].first_chunk().expect("the words end with a whole window");
+        Leaf { words, count }
     }
 
     pub(super) fn leaf_count(&self) -> usize {
@@ -70,7 +73,7 @@ impl<'a> Leaf<'a> {
     /// One coordinate of one vertex of all triangles; what lies beyond the last one has no meaning.
     #[inline(always)]
     pub(super) fn row(&self, axis: usize, corner: usize) -> &'a [f32; LANES] {
-        let at = (3 * axis + corner) * self.count;
+        let at = (3 * (axis & 3) + corner) * self.count;
         self.words[at..][..LANES].try_into().expect("the length is that of the array")
     }
 
