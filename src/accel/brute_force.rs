@@ -28,9 +28,15 @@ impl BruteForce {
 }
 
 impl Accel for BruteForce {
-    fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
-        let mut best = ClosestHit::none(ray);
-        test_triangles::<Q, P>(&self.triangles, &TriangleRay::new(ray), ray.t_min, &mut best);
-        best.found()
+    #[inline(always)]
+    fn query<Q: Query, P: PrecisionMode, R>(
+        &self,
+        ray: impl Into<Ray>,
+        then: impl FnOnce(Option<ClosestHit>) -> R,
+    ) -> R {
+        let Some(ray) = Ray::valid(ray) else { return then(None) };
+        let mut best = ClosestHit::none(&ray);
+        test_triangles::<Q, P>(&self.triangles, &TriangleRay::new(&ray), ray.t_min, &mut best);
+        then(best.found())
     }
 }

@@ -19,6 +19,13 @@ use crate::geometry::{PrecisionMode, Ray};
 /// What a structure can be asked. The precision and the kind of query are compile-time choices, so that a kernel
 /// holds no branch on either.
 pub(crate) trait Accel {
-    /// The closest hit, or any, of a valid ray.
-    fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit>;
+    /// The closest hit of a ray, or any, handed to `then`; none for a ray that is not valid.
+    ///
+    /// The ray is made, and its hit used, inside the kernel: what went through memory on the way would be loaded
+    /// wider than it was just stored, and would wait for the stores.
+    fn query<Q: Query, P: PrecisionMode, R>(
+        &self,
+        ray: impl Into<Ray>,
+        then: impl FnOnce(Option<ClosestHit>) -> R,
+    ) -> R;
 }

@@ -1,13 +1,10 @@
 //! Queries: one ray, or many.
 
-use glam::Vec3;
-
 use super::options::GnomonQueryOptions;
 use super::pointers::{output, output_slice, required, slice};
 use super::scene::GnomonScene;
 use super::status::{Failure, GnomonStatus, caught, guard, report};
 use super::types::{GnomonHit, GnomonRay};
-use crate::geometry::Ray;
 
 /// The closest hit of a ray: true if there is one, and `hit_out` gets it; false for a miss, and `hit_out` says so.
 ///
@@ -30,9 +27,10 @@ pub unsafe extern "C-unwind" fn gnomon_intersect(
         let ray = unsafe { required(ray, "ray") }?;
         // SAFETY: the caller's promise.
         let hit_out = unsafe { output(hit_out, "hit_out") }?;
-        let hit = scene.0.intersect(&read_fresh(ray));
-        hit_out.write(hit.into());
-        Ok(hit.is_hit())
+        Ok(scene.0.intersect_then(ray, |hit| {
+            hit_out.write(hit.into());
+            hit.is_hit()
+        }))
     })
 }
 
@@ -50,7 +48,7 @@ pub unsafe extern "C-unwind" fn gnomon_occluded(scene: *const GnomonScene, ray: 
         let scene = unsafe { required(scene, "scene") }?;
         // SAFETY: the caller's promise.
         let ray = unsafe { required(ray, "ray") }?;
-        Ok(scene.0.occluded(&read_fresh(ray)))
+        Ok(scene.0.occluded(ray))
     })
 }
 
@@ -122,19 +120,4 @@ fn answer(query: impl FnOnce() -> Result<bool, Failure>) -> bool {
         report(failure);
         false
     })
-}
-
-/// Reads a ray float by float. A caller has just written it so; a wider load would have to wait until those stores have
-/// left for the cache, about 10 ns.
-#[inline(always)]
-fn read_fresh(ray: &GnomonRay) -> Ray {
-    // SAFETY: the reference is valid; volatile only keeps the compiler from merging the loads.
-    let read = |field: &f32| unsafe { std::ptr::read_volatile(field) };
-    let read3 = |[x, y, z]: &[f32; 3]| Vec3::new(read(x), read(y), read(z));
-    Ray {
-        origin: read3(&ray.origin),
-        t_min: read(&ray.t_min),
-        direction: read3(&ray.direction),
-        t_max: read(&ray.t_max),
-    }
 }

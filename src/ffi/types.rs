@@ -113,13 +113,19 @@ pub struct GnomonSceneStats {
     pub sah_cost: f64,
 }
 
-impl From<GnomonRay> for Ray {
-    fn from(ray: GnomonRay) -> Self {
+impl From<&GnomonRay> for Ray {
+    /// Reads a ray float by float. A caller has just written it so; a wider load would have to wait until those stores
+    /// have left for the cache.
+    #[inline(always)]
+    fn from(ray: &GnomonRay) -> Self {
+        // SAFETY: the reference is valid; volatile only keeps the compiler from merging the loads.
+        let read = |field: &f32| unsafe { std::ptr::read_volatile(field) };
+        let read3 = |[x, y, z]: &[f32; 3]| Vec3::new(read(x), read(y), read(z));
         Self {
-            origin: Vec3::from_array(ray.origin),
-            t_min: ray.t_min,
-            direction: Vec3::from_array(ray.direction),
-            t_max: ray.t_max,
+            origin: read3(&ray.origin),
+            t_min: read(&ray.t_min),
+            direction: read3(&ray.direction),
+            t_max: read(&ray.t_max),
         }
     }
 }

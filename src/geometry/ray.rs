@@ -19,13 +19,26 @@ pub struct Ray {
 }
 
 impl Ray {
+    /// The ray, if it [is valid](Self::is_valid).
+    #[inline(always)]
+    pub(crate) fn valid(source: impl Into<Self>) -> Option<Self> {
+        Some(source.into()).filter(Self::is_valid)
+    }
+
     /// Whether the ray can hit anything: finite origin and direction, a direction that is not zero, an interval that
     /// is not empty. A NaN anywhere makes it false.
+    #[inline]
     pub fn is_valid(&self) -> bool {
         self.origin.is_finite()
             && self.direction.is_finite()
             && self.direction != Vec3::ZERO
             && self.t_min <= self.t_max
+    }
+}
+
+impl From<&Self> for Ray {
+    fn from(ray: &Self) -> Self {
+        *ray
     }
 }
 

@@ -91,7 +91,7 @@ impl TriangleRay {
         let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
         Self {
             origin: ray.origin.to_array(),
-            direction,
+            direction: ray.direction.to_array(),
             axes: [kx, ky, kz],
             shear: [direction[kx] / direction[kz], direction[ky] / direction[kz]],
         }

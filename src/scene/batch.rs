@@ -13,7 +13,8 @@ impl Scene {
     /// `hits` has one place a ray; what it held is overwritten.
     pub fn intersect_n<R, H>(&self, rays: &[R], hits: &mut [MaybeUninit<H>], thread_count: u32)
     where
-        R: Copy + Into<Ray> + Sync,
+        R: Sync,
+        for<'a> &'a R: Into<Ray>,
         H: From<Hit> + Send,
     {
         self.dispatch(Batch { question: ClosestOf, rays, answers: hits, thread_count });
@@ -22,7 +23,8 @@ impl Scene {
     /// As [`Scene::occluded`] for each ray; see [`Scene::intersect_n`].
     pub fn occluded_n<R, O>(&self, rays: &[R], occluded: &mut [MaybeUninit<O>], thread_count: u32)
     where
-        R: Copy + Into<Ray> + Sync,
+        R: Sync,
+        for<'a> &'a R: Into<Ray>,
         O: From<bool> + Send,
     {
         self.dispatch(Batch { question: Occlusion, rays, answers: occluded, thread_count });
@@ -39,7 +41,8 @@ struct Batch<'a, Q, R, T> {
 impl<Q, R, T> Kernel for Batch<'_, Q, R, T>
 where
     Q: Question,
-    R: Copy + Into<Ray> + Sync,
+    R: Sync,
+    for<'a> &'a R: Into<Ray>,
     T: From<Q::Answer> + Send,
 {
     type Output = ();
@@ -49,8 +52,8 @@ where
         const RUN: usize = 256;
 
         let trace = |rays: &[R], answers: &mut [MaybeUninit<T>]| {
-            for (&ray, answer) in rays.iter().zip(answers) {
-                answer.write(self.question.answer::<A, P>(accel, &ray.into()).into());
+            for (ray, answer) in rays.iter().zip(answers) {
+                self.question.answer::<A, P, _>(accel, ray, |found| answer.write(found.into()));
             }
         };
         let run_count = self.rays.len().div_ceil(RUN);

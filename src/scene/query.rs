@@ -17,13 +17,20 @@ impl Scene {
     /// The closest hit of a ray, or [`Hit::MISS`].
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Hit {
-        self.dispatch(Single(ClosestOf, ray))
+        self.intersect_then(ray, |hit| hit)
+    }
+
+    /// As [`Scene::intersect`], the hit handed to `then` as soon as it is known: a caller that writes it elsewhere
+    /// saves a copy.
+    #[inline]
+    pub fn intersect_then<R>(&self, ray: impl Into<Ray>, then: impl FnOnce(Hit) -> R) -> R {
+        self.dispatch(Single { question: ClosestOf, ray, then })
     }
 
     /// Whether the ray hits anything.
     #[inline]
-    pub fn occluded(&self, ray: &Ray) -> bool {
-        self.dispatch(Single(Occlusion, ray))
+    pub fn occluded(&self, ray: impl Into<Ray>) -> bool {
+        self.dispatch(Single { question: Occlusion, ray, then: |is_hit| is_hit })
     }
 
     #[inline(always)]
@@ -62,7 +69,12 @@ impl Scene {
 /// A question about one ray.
 pub(super) trait Question: Copy + Sync {
     type Answer: Send;
-    fn answer<A: Accel, P: PrecisionMode>(self, accel: &A, ray: &Ray) -> Self::Answer;
+    fn answer<A: Accel, P: PrecisionMode, R>(
+        self,
+        accel: &A,
+        ray: impl Into<Ray>,
+        then: impl FnOnce(Self::Answer) -> R,
+    ) -> R;
 }
 
 /// What does it hit first?
@@ -77,11 +89,8 @@ impl Question for ClosestOf {
     type Answer = Hit;
 
     #[inline(always)]
-    fn answer<A: Accel, P: PrecisionMode>(self, accel: &A, ray: &Ray) -> Hit {
-        if !ray.is_valid() {
-            return Hit::MISS;
-        }
-        accel.query::<Closest, P>(ray).map_or(Hit::MISS, complete)
+    fn answer<A: Accel, P: PrecisionMode, R>(self, accel: &A, ray: impl Into<Ray>, then: impl FnOnce(Hit) -> R) -> R {
+        accel.query::<Closest, P, R>(ray, |found| then(found.map_or(Hit::MISS, complete)))
     }
 }
 
@@ -89,11 +98,12 @@ impl Question for Occlusion {
     type Answer = bool;
 
     #[inline(always)]
-    fn answer<A: Accel, P: PrecisionMode>(self, accel: &A, ray: &Ray) -> bool {
-        ray.is_valid() && accel.query::<AnyHit, P>(ray).is_some()
+    fn answer<A: Accel, P: PrecisionMode, R>(self, accel: &A, ray: impl Into<Ray>, then: impl FnOnce(bool) -> R) -> R {
+        accel.query::<AnyHit, P, R>(ray, |found| then(found.is_some()))
     }
 }
 
+#[inline(always)]
 fn complete(found: ClosestHit) -> Hit {
     Hit {
         t: found.t,
@@ -106,13 +116,17 @@ fn complete(found: ClosestHit) -> Hit {
     }
 }
 
-struct Single<'a, Q>(Q, &'a Ray);
+struct Single<Q, I, T> {
+    question: Q,
+    ray: I,
+    then: T,
+}
 
-impl<Q: Question> Kernel for Single<'_, Q> {
-    type Output = Q::Answer;
+impl<Q: Question, I: Into<Ray>, R, T: FnOnce(Q::Answer) -> R> Kernel for Single<Q, I, T> {
+    type Output = R;
 
     #[inline(always)]
-    fn run<A: Accel + Sync, P: PrecisionMode>(self, accel: &A) -> Q::Answer {
-        self.0.answer::<A, P>(accel, self.1)
+    fn run<A: Accel + Sync, P: PrecisionMode>(self, accel: &A) -> R {
+        self.question.answer::<A, P, R>(accel, self.ray, self.then)
     }
 }

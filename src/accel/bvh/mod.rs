@@ -60,7 +60,12 @@ impl Bvh {
 }
 
 impl Accel for Bvh {
-    fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
-        self.traverse::<Q, P>(ray)
+    #[inline(always)]
+    fn query<Q: Query, P: PrecisionMode, R>(
+        &self,
+        ray: impl Into<Ray>,
+        then: impl FnOnce(Option<ClosestHit>) -> R,
+    ) -> R {
+        then(Ray::valid(ray).and_then(|ray| self.traverse::<Q, P>(&ray)))
     }
 }

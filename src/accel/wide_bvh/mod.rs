@@ -72,7 +72,11 @@ pub(crate) struct Vectorized<'a, S> {
 
 impl<S: Simd> Accel for Vectorized<'_, S> {
     #[inline(always)]
-    fn query<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
-        self.simd.vectorize(traverse::Traversal::<Q, P>::new(self.bvh, ray))
+    fn query<Q: Query, P: PrecisionMode, R>(
+        &self,
+        ray: impl Into<Ray>,
+        then: impl FnOnce(Option<ClosestHit>) -> R,
+    ) -> R {
+        self.simd.vectorize(traverse::Traversal::<Q, P, _, _>::new(self.bvh, ray, then))
     }
 }

@@ -24,84 +24,96 @@ const MOST_PENDING: usize = MOST_LEVELS * (LANES - 1);
 
 type Stack = ArrayVec<Pending, MOST_PENDING>;
 
-pub(super) struct Traversal<'a, Q, P> {
+pub(super) struct Traversal<'a, Q, P, I, T> {
     bvh: &'a WideBvh,
-    ray: &'a Ray,
+    ray: I,
+    then: T,
     choices: PhantomData<(Q, P)>,
 }
 
-impl<'a, Q: Query, P: PrecisionMode> Traversal<'a, Q, P> {
+impl<'a, Q, P, I, T> Traversal<'a, Q, P, I, T> {
     #[inline(always)]
-    pub(super) fn new(bvh: &'a WideBvh, ray: &'a Ray) -> Self {
-        Self { bvh, ray, choices: PhantomData }
+    pub(super) fn new(bvh: &'a WideBvh, ray: I, then: T) -> Self {
+        Self { bvh, ray, then, choices: PhantomData }
     }
 }
 
-impl<Q: Query, P: PrecisionMode> SimdKernel for Traversal<'_, Q, P> {
-    type Output = Option<ClosestHit>;
+impl<Q, P, I, R, T> SimdKernel for Traversal<'_, Q, P, I, T>
+where
+    Q: Query,
+    P: PrecisionMode,
+    I: Into<Ray>,
+    T: FnOnce(Option<ClosestHit>) -> R,
+{
+    type Output = R;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> Option<ClosestHit> {
-        let slabs = SlabRay::new(self.ray, &self.bvh.bounds);
+    fn run<S: Simd>(self, simd: S) -> R {
+        let Some(ray) = Ray::valid(self.ray) else { return (self.then)(None) };
+        let slabs = SlabRay::new(&ray, &self.bvh.bounds);
         let found = if S::IS_FUSED && slabs.is_oblique() {
-            self.traverse::<S, Fused<S>>(simd, &slabs)
+            traverse::<Q, P, S, Fused<S>>(simd, self.bvh, &ray, &slabs)
         } else {
-            self.traverse::<S, Plain<S>>(simd, &slabs)
+            traverse::<Q, P, S, Plain<S>>(simd, self.bvh, &ray, &slabs)
         };
-        found.map(|hit| self.bvh.leaves.resolve(hit))
+        (self.then)(found.map(|hit| self.bvh.leaves.resolve(hit)))
     }
 }
 
-impl<Q: Query, P: PrecisionMode> Traversal<'_, Q, P> {
-    #[inline(always)]
-    fn traverse<S: Simd, B: BoxTest<S>>(&self, simd: S, slabs: &SlabRay) -> Option<ClosestHit> {
-        let boxes = B::new(simd, slabs);
-        let triangles = LeafTest::new(simd, self.ray);
-        let t_min = simd.splat(self.ray.t_min * slabs.time_scale);
-        let mut t_max = self.ray.t_max * slabs.time_scale;
-        let mut best = ClosestHit::none(self.ray);
-        let mut stack = Stack::new_const();
-        let mut child = self.bvh.root;
-        loop {
-            if child.is_leaf() {
-                let leaf = self.bvh.leaves.leaf(child.triangles());
-                if triangles.test::<Q, P>(simd, &leaf, self.ray.t_min, &mut best) {
-                    break;
-                }
-                t_max = best.t * slabs.time_scale;
-            } else {
-                let node = &self.bvh.nodes[child.node_index()];
-                let (mut hits, enter) = boxes.test(simd, node, t_min, t_max);
-                if hits != 0 {
-                    if hits & (hits - 1) == 0 {
-                        child = node.children[hits.trailing_zeros() as usize % LANES];
-                        continue;
-                    }
-                    let enter = simd.store(enter);
-                    let bottom = stack.len();
-                    while hits != 0 {
-                        let slot = hits.trailing_zeros() as usize % LANES;
-                        hits &= hits - 1;
-                        let waiting = node.children[slot];
-                        if !waiting.is_leaf() {
-                            prefetch(&self.bvh.nodes[waiting.node_index()]);
-                        }
-                        push::<Q>(&mut stack, bottom, Pending { enter: enter[slot], child: waiting });
-                    }
-                    child = stack.pop().expect("two were pushed").child;
+#[inline(always)]
+fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
+    simd: S,
+    bvh: &WideBvh,
+    ray: &Ray,
+    slabs: &SlabRay,
+) -> Option<ClosestHit> {
+    let boxes = B::new(simd, slabs);
+    let triangle_ray = TriangleRay::new(ray);
+    let triangles = LeafTest::new(simd, &triangle_ray);
+    let t_min = simd.splat(ray.t_min * slabs.time_scale);
+    let mut t_max = ray.t_max * slabs.time_scale;
+    let mut best = ClosestHit::none(ray);
+    let mut stack = Stack::new_const();
+    let mut child = bvh.root;
+    loop {
+        if child.is_leaf() {
+            let leaf = bvh.leaves.leaf(child.triangles());
+            if triangles.test::<Q, P>(simd, &leaf, ray.t_min, &mut best) {
+                break;
+            }
+            t_max = best.t * slabs.time_scale;
+        } else {
+            let node = &bvh.nodes[child.node_index()];
+            let (mut hits, enter) = boxes.test(simd, node, t_min, t_max);
+            if hits != 0 {
+                if hits & (hits - 1) == 0 {
+                    child = node.children[hits.trailing_zeros() as usize % LANES];
                     continue;
                 }
-            }
-            // A child that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
-            child = loop {
-                let Some(pending) = stack.pop() else { return best.found() };
-                if pending.enter <= t_max {
-                    break pending.child;
+                let enter = simd.store(enter);
+                let bottom = stack.len();
+                while hits != 0 {
+                    let slot = hits.trailing_zeros() as usize % LANES;
+                    hits &= hits - 1;
+                    let waiting = node.children[slot];
+                    if !waiting.is_leaf() {
+                        prefetch(&bvh.nodes[waiting.node_index()]);
+                    }
+                    push::<Q>(&mut stack, bottom, Pending { enter: enter[slot], child: waiting });
                 }
-            };
+                child = stack.pop().expect("two were pushed").child;
+                continue;
+            }
         }
-        best.found()
+        // A child that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
+        child = loop {
+            let Some(pending) = stack.pop() else { return best.found() };
+            if pending.enter <= t_max {
+                break pending.child;
+            }
+        };
     }
+    best.found()
 }
 
 /// Puts a child above those from `bottom` on that the ray enters later; without order where any hit will do.
@@ -201,8 +213,8 @@ impl<S: Simd> BoxTest<S> for Plain<S> {
 
 /// Eight triangles against a ray: the scalar test decides about those that are not refused here, and refuses all that
 /// are.
-struct LeafTest<S: Simd> {
-    ray: TriangleRay,
+struct LeafTest<'a, S: Simd> {
+    ray: &'a TriangleRay,
     origin: [S::F32x8; 3],
     shear_x: S::F32x8,
     shear_y: S::F32x8,
@@ -211,10 +223,9 @@ struct LeafTest<S: Simd> {
 /// A coordinate of the three vertices of eight triangles.
 type Corners<S> = [<S as Simd>::F32x8; 3];
 
-impl<S: Simd> LeafTest<S> {
+impl<'a, S: Simd> LeafTest<'a, S> {
     #[inline(always)]
-    fn new(simd: S, ray: &Ray) -> Self {
-        let ray = TriangleRay::new(ray);
+    fn new(simd: S, ray: &'a TriangleRay) -> Self {
         let [kx, ky, kz] = ray.axes;
         let origin = splat(simd, [ray.origin[kx], ray.origin[ky], ray.origin[kz]]);
         Self { ray, origin, shear_x: simd.splat(ray.shear[0]), shear_y: simd.splat(ray.shear[1]) }
