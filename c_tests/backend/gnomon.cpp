@@ -4,6 +4,7 @@
 #include "backend/backend.hpp"
 #include "backend/names.hpp"
 #include "backend/trace_loop.hpp"
+#include "harness/triangles.hpp"
 
 namespace harness {
 namespace {
@@ -26,12 +27,7 @@ BuilderHandle fill_builder(const Scene& scene) {
     if (!builder) throw BuildError(GNOMON_ERROR_OUT_OF_MEMORY, gnomon_last_error());
     for (std::uint32_t mesh_id = 0; mesh_id < scene.meshes.size(); ++mesh_id) {
         const Mesh& mesh = scene.meshes[mesh_id];
-        GnomonTriangles triangles{};
-        triangles.positions = mesh.positions.data();
-        triangles.vertex_count = mesh.vertex_count();
-        triangles.indices = mesh.indices.data();
-        triangles.index_format = GNOMON_INDEX_U32;
-        triangles.triangle_count = mesh.triangle_count();
+        const GnomonTriangles triangles = triangles_of(mesh);
         std::uint32_t geometry_id = GNOMON_INVALID_ID;
         require(gnomon_scene_builder_add_triangles(builder.get(), &triangles, &geometry_id));
         if (geometry_id != mesh_id) {

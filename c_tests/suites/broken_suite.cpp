@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "api/handles.hpp"
+#include "harness/triangles.hpp"
 #include "suites/gltf_maker.hpp"
 #include "suites/mutate_glb.hpp"
 
@@ -91,12 +92,7 @@ const std::vector<Case> assimp_cases = {
 SceneHandle build(const Scene& scene, std::uint32_t invalid_triangles, GnomonStatus& status) {
     const BuilderHandle builder = new_builder();
     for (const Mesh& mesh : scene.meshes) {
-        GnomonTriangles triangles{};
-        triangles.positions = mesh.positions.data();
-        triangles.vertex_count = mesh.vertex_count();
-        triangles.indices = mesh.indices.data();
-        triangles.index_format = GNOMON_INDEX_U32;
-        triangles.triangle_count = mesh.triangle_count();
+        const GnomonTriangles triangles = triangles_of(mesh);
         std::uint32_t geometry_id;
         status = gnomon_scene_builder_add_triangles(builder.get(), &triangles, &geometry_id);
         if (status != GNOMON_OK) return nullptr;

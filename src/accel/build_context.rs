@@ -60,9 +60,9 @@ impl<'a> BuildContext<'a> {
         Self { pool, limit, held: AtomicUsize::new(0), peak: AtomicUsize::new(0), watch }
     }
 
-    /// Says how many units [`BuildContext::advance`] will count in all.
-    pub(crate) fn expect(&self, total: usize) {
-        self.watch.total.store(total, Ordering::Relaxed);
+    /// Announces units of work that [`BuildContext::advance`] will count.
+    pub(crate) fn expect(&self, work: usize) {
+        self.watch.total.fetch_add(work, Ordering::Relaxed);
     }
 
     /// Counts work that is done; fails once somebody cancelled.

@@ -1,4 +1,4 @@
-//! The one routine by which every structure tests its triangles, and the order in which hits win.
+//! What queries look for, the order in which hits win, and a leaf tested triangle by triangle.
 
 use crate::geometry::{INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
 

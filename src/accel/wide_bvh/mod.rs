@@ -41,12 +41,14 @@ impl WideBvh {
         if count > limit {
             return Err(BuildFailure::TooManyTriangles { count, limit });
         }
+        context.expect(count);
         let ids = leaves::Ids::new(&triangles);
         let binary = match quality {
             Quality::Low => Bvh::build(triangles, bounds, &Median, context),
             Quality::Medium | Quality::High => Bvh::build(triangles, bounds, &BinnedSah::FOR_WIDE_LEAVES, context),
         }?;
         let wide = collapse::collapse(binary, ids, context)?;
+        context.advance(count)?;
         #[cfg(any(test, debug_assertions))]
         wide.validate().expect("a builder keeps the tree's invariants");
         Ok(wide)
