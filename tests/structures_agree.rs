@@ -4,7 +4,7 @@ mod common;
 
 use std::mem::MaybeUninit;
 
-use common::{Mesh, Rng, meshes, rays_for};
+use common::{Mesh, Rng, ZERO_AREA_GEOMETRY, meshes, rays_for};
 use gnomon::{BuildOptions, Hit, Isa, Precision, Quality, Ray, Scene, SceneBuilder, Structure};
 
 fn build(mesh: &Mesh, options: BuildOptions) -> Scene {
@@ -65,6 +65,12 @@ fn every_structure_gives_the_hits_of_brute_force() {
             let brute_force = BuildOptions { structure: Structure::BruteForce, precision, ..BuildOptions::default() };
             let reference = build(&mesh, brute_force);
             let expected: Vec<Hit> = rays.iter().map(|ray| reference.intersect(ray)).collect();
+            for geometry_id in [0, 3] {
+                let is_hit = expected.iter().any(|hit| hit.geometry_id == geometry_id);
+                assert!(is_hit, "{}: no ray hits geometry {geometry_id}", mesh.name);
+            }
+            let hits_nothing = expected.iter().all(|hit| hit.geometry_id != ZERO_AREA_GEOMETRY);
+            assert!(hits_nothing, "{}: a triangle of zero area is hit", mesh.name);
             for variant in variants() {
                 let variant = BuildOptions { precision, ..variant };
                 let scene = build(&mesh, variant);

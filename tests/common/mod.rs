@@ -32,6 +32,9 @@ impl Rng {
     }
 }
 
+/// The geometry of each mesh that nothing may hit.
+pub(crate) const ZERO_AREA_GEOMETRY: u32 = 1;
+
 pub(crate) struct Mesh {
     pub(crate) name: &'static str,
     pub(crate) vertices: Vec<Vec3>,
@@ -39,12 +42,21 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
+    /// As several geometries, which share edges: half of the triangles, [`ZERO_AREA_GEOMETRY`], none, the other half.
     pub(crate) fn add_to(&self, builder: &mut SceneBuilder) {
+        let (first_half, second_half) = self.triangles.split_at(self.triangles.len() / 2);
+        let zero_area: Vec<[u32; 3]> = self.triangles.iter().map(|&[a, b, _]| [a, b, a]).collect();
+        for triangles in [first_half, &zero_area, &[], second_half] {
+            self.add_geometry(triangles, builder);
+        }
+    }
+
+    fn add_geometry(&self, triangles: &[[u32; 3]], builder: &mut SceneBuilder) {
         let positions: Vec<u8> = self.vertices.iter().flat_map(|v| v.to_array()).flat_map(f32::to_ne_bytes).collect();
-        let indices: Vec<u8> = self.triangles.iter().flatten().flat_map(|index| index.to_ne_bytes()).collect();
+        let indices: Vec<u8> = triangles.iter().flatten().flat_map(|index| index.to_ne_bytes()).collect();
         let view = TriangleView {
             positions: PositionView::new(&positions, 12, self.vertices.len()).expect("packed"),
-            indices: IndexView::U32(IndexBytes::new(&indices, 12, self.triangles.len()).expect("packed")),
+            indices: IndexView::U32(IndexBytes::new(&indices, 12, triangles.len()).expect("packed")),
         };
         builder.add_triangles(&view).expect("the indices are in range");
     }
