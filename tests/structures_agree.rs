@@ -5,6 +5,7 @@ mod common;
 use std::mem::MaybeUninit;
 
 use common::{Mesh, Rng, ZERO_AREA_GEOMETRY, meshes, rays_for};
+use glam::Vec3;
 use gnomon::{BuildOptions, Hit, Isa, Precision, Quality, Ray, Scene, SceneBuilder, Structure};
 
 fn build(mesh: &Mesh, options: BuildOptions) -> Scene {
@@ -129,6 +130,23 @@ fn retrace_keeps_the_hit_at_the_closed_ends_and_loses_it_beyond() {
                 let before = Ray { t_max: hit.t.next_down(), ..ray };
                 assert!(!scene.intersect(&before).is_hit(), "{} {variant:?}: {}", mesh.name, hexadecimal(&before));
             }
+        }
+    }
+}
+
+#[test]
+fn collinear_triangles_are_never_hit() {
+    let mut rng = Rng::new(17);
+    let points: Vec<Vec3> = (0..300).map(|_| rng.point()).collect();
+    // Multiples of one vector by powers of two lie on a line exactly.
+    let mesh = Mesh::from_soup("collinear", points.iter().flat_map(|&p| [p, p * 2.0, p * 4.0]).collect());
+    let brute_force = BuildOptions { structure: Structure::BruteForce, ..BuildOptions::default() };
+    let scenes: Vec<Scene> = variants().into_iter().chain([brute_force]).map(|options| build(&mesh, options)).collect();
+    for &point in points.iter().cycle().take(3000) {
+        let origin = 3.0 * rng.point();
+        let ray = Ray { origin, t_min: 0.0, direction: point * 3.0 - origin, t_max: f32::INFINITY };
+        for scene in &scenes {
+            assert!(!scene.intersect(&ray).is_hit(), "{}", hexadecimal(&ray));
         }
     }
 }

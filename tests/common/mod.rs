@@ -61,7 +61,7 @@ impl Mesh {
         builder.add_triangles(&view).expect("the indices are in range");
     }
 
-    fn from_soup(name: &'static str, corners: Vec<Vec3>) -> Self {
+    pub(crate) fn from_soup(name: &'static str, corners: Vec<Vec3>) -> Self {
         let triangles = (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         Self { name, vertices: corners, triangles }
     }
