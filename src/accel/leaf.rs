@@ -32,6 +32,14 @@ pub(crate) struct ClosestHit {
 }
 
 impl ClosestHit {
+    /// For a query that asks for no more than whether there is a hit.
+    pub(crate) const UNSPECIFIED: Self = Self {
+        t: f32::NAN,
+        u: f32::NAN,
+        v: f32::NAN,
+        triangle: Triangle { axes: [[f32::NAN; 3]; 3], geometry_id: INVALID_ID, primitive_id: INVALID_ID },
+    };
+
     /// Nothing yet: whatever lies in the interval is better, a hit at `t_max` itself too.
     pub(crate) fn none(ray: &Ray) -> Self {
         Self { t: ray.t_max, u: 0.0, v: 0.0, triangle: Triangle::new([[0.0; 3]; 3], INVALID_ID, INVALID_ID) }

@@ -1,6 +1,6 @@
 //! Axis-aligned boxes, and the conservative test of a ray against one.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4, Vec4Swizzles};
 
 use super::Ray;
 use crate::math::{gamma, scale_by_power_of_two_near};
@@ -21,6 +21,11 @@ impl Aabb {
     /// The smallest box that contains both.
     pub fn union(self, other: Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
+    }
+
+    /// The lower and the upper corner on four lanes, the fourth 0.
+    pub(crate) fn corners4(&self) -> [Vec4; 2] {
+        [self.lower.extend(0.0), self.upper.extend(0.0)]
     }
 
     /// Whether all of `inner` is inside.
@@ -62,12 +67,12 @@ pub(crate) struct SlabRay {
     pub(crate) time_scale: f32,
 }
 
-impl SlabRay {
-    #[inline(always)]
-    pub(crate) fn new(ray: &Ray, scene_bounds: &Aabb) -> Self {
-        const LEAST_UNSCALED: f32 = 1.0 / MOST_UNSCALED;
-        const MOST_UNSCALED: f32 = (1u64 << 60) as f32;
+/// Directions of this length and down to its inverse are not scaled.
+const MOST_UNSCALED: f32 = (1u64 << 60) as f32;
+const LEAST_UNSCALED: f32 = 1.0 / MOST_UNSCALED;
 
+impl SlabRay {
+    pub(crate) fn new(ray: &Ray, scene_bounds: &Aabb) -> Self {
         let magnitude = ray.direction.abs().max_element();
         let scale = if (LEAST_UNSCALED..=MOST_UNSCALED).contains(&magnitude) {
             1.0
@@ -94,23 +99,6 @@ impl SlabRay {
         }
     }
 
-    /// Whether no component of the direction is zero, or as good as zero beside the others.
-    pub(crate) fn is_oblique(&self) -> bool {
-        self.inverse.iter().all(|inverse| inverse.is_finite())
-    }
-
-    /// `(near, far)` for each axis, such that `plane * inverse - near` is no later than the near plane, widened by
-    /// the slack, and `plane * inverse - far` no earlier than the far one, fused or not. For oblique rays.
-    ///
-    /// `origin * inverse` and the sum with the slack round once each, before they cancel against the plane's product.
-    pub(crate) fn fused_offsets(&self) -> [(f32, f32); 3] {
-        std::array::from_fn(|axis| {
-            let offset = self.origin[axis] * self.inverse[axis];
-            let slack = self.slack[axis] + gamma(4) * offset.abs();
-            (offset + slack, offset - slack)
-        })
-    }
-
     /// Where the ray enters the box given as `[[lower, upper]; 3]`, if it does so within `[t_min, t_max]` (all in
     /// scaled lengths). A NaN from `0 * inf`, an origin exactly in the plane of a slab that it runs along, decides
     /// nothing: each comparison keeps the other operand.
@@ -126,5 +114,48 @@ impl SlabRay {
             leave = if far < leave { far } else { leave };
         }
         (enter <= leave).then_some(enter)
+    }
+}
+
+/// A [`SlabRay`] for rays of which no direction component is zero, or as good as zero, or beyond 2^60, as nearly all
+/// are. They need no scaling. A plane is met at `plane * inverse - offset`, fused or not.
+///
+/// `origin * inverse` and its sum with the slack round once each, before they cancel against the plane's product:
+/// `gamma(4)` of it covers that.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ObliqueSlabs {
+    pub(crate) inverse: Vec4,
+    /// For near planes: the slab begins no later than this says.
+    pub(crate) near_offset: Vec4,
+    /// For far planes: the slab ends no earlier.
+    pub(crate) far_offset: Vec4,
+    /// Bit `i` where the direction is negative along axis `i`, so that the upper plane is the near one.
+    pub(crate) negative: u32,
+}
+
+impl ObliqueSlabs {
+    /// `corners` are those of the scene. `None` for other rays, and for those that are not valid.
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray, [lower, upper]: &[Vec4; 2]) -> Option<Self> {
+        const MOST: Vec4 = Vec4::splat(MOST_UNSCALED);
+        let (origin, direction) = (ray.origin.extend(0.0), ray.direction.extend(1.0));
+        // Of a zero it is infinite.
+        let inverse = Vec4::ONE / direction;
+        let reach = (*upper - origin).max(origin - *lower);
+        // Comparisons with a NaN are false.
+        let is_oblique = direction.abs().max(inverse.abs()).cmplt(MOST) & reach.cmplt(MOST);
+        if !(is_oblique.all() & (ray.t_min <= ray.t_max)) {
+            return None;
+        }
+        let reach = reach.max(reach.yzzz()).max(reach.zzzz()).x;
+        let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
+        let offset = origin * inverse;
+        let slack = inverse.abs() * slack_distance + offset.abs() * gamma(4);
+        Some(Self {
+            inverse,
+            near_offset: offset + slack,
+            far_offset: offset - slack,
+            negative: direction.cmplt(Vec4::ZERO).bitmask(),
+        })
     }
 }

@@ -8,7 +8,7 @@ mod triangle;
 mod triangle_hit;
 
 pub use aabb::Aabb;
-pub(crate) use aabb::SlabRay;
+pub(crate) use aabb::{ObliqueSlabs, SlabRay};
 pub use mesh_view::{IndexBytes, IndexView, PositionView, TriangleView, span_bytes};
 pub use ray::{Hit, INVALID_ID, Ray};
 pub(crate) use triangle::Triangle;

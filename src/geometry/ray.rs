@@ -1,6 +1,6 @@
 //! A ray, and what it hits.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// The id of what is not there: a miss's geometry, an instance where none is involved.
 pub const INVALID_ID: u32 = u32::MAX;
@@ -29,10 +29,10 @@ impl Ray {
     /// is not empty. A NaN anywhere makes it false.
     #[inline]
     pub fn is_valid(&self) -> bool {
-        self.origin.is_finite()
-            && self.direction.is_finite()
-            && self.direction != Vec3::ZERO
-            && self.t_min <= self.t_max
+        // A finite number less itself is 0, all others make a NaN.
+        let (origin, direction) = (self.origin.extend(0.0), self.direction.extend(0.0));
+        let is_finite = ((origin - origin) + (direction - direction)).cmpeq(Vec4::ZERO).all();
+        is_finite & direction.cmpne(Vec4::ZERO).any() & (self.t_min <= self.t_max)
     }
 }
 

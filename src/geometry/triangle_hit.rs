@@ -14,6 +14,8 @@
 
 use std::ops::{Mul, Sub};
 
+use glam::Vec4;
+
 use super::evaluation::Evaluation;
 use super::{Ray, Triangle};
 use crate::math::DoubleDouble;
@@ -29,12 +31,18 @@ pub(crate) struct TriangleHit {
 /// A ray made ready for triangle tests.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TriangleRay {
-    pub(crate) origin: [f32; 3],
-    pub(super) direction: [f32; 3],
+    /// 0 in the fourth lane.
+    pub(crate) origin: [f32; 4],
+    /// 1 in the fourth lane.
+    pub(crate) direction: [f32; 4],
     /// x, y and z of the sheared space, as axes of the scene's.
     pub(crate) axes: [usize; 3],
-    pub(crate) shear: [f32; 2],
+    /// `direction / dz`: how far the shear moves a point for each unit of z; and `1 / dz`.
+    pub(crate) per_z: [f32; 4],
 }
+
+/// The coordinates of a triangle's vertices, axis by axis in the order of [`TriangleRay::axes`].
+pub(crate) type Corners = [[f32; 3]; 3];
 
 /// Edge functions: the weights of the three vertices, up to a common factor.
 type Weights<T> = [T; 3];
@@ -52,8 +60,12 @@ impl Interval {
     }
 
     /// Whether everything within `error` of `t` rounds to a float outside.
+    #[inline(always)]
     fn excludes(&self, t: f64, error: f64) -> bool {
-        t + error < f64::from(self.t_min.next_down()) || t - error > f64::from(self.t_max.next_up())
+        // At least the distance to the next float.
+        let spacing = |bound: f64| bound.abs() * f64::from(f32::EPSILON) + f64::from(f32::from_bits(1));
+        let (t_min, t_max) = (f64::from(self.t_min), f64::from(self.t_max));
+        t + error < t_min - spacing(t_min) || t - error > t_max + spacing(t_max)
     }
 }
 
@@ -66,6 +78,9 @@ pub(crate) trait PrecisionMode {
         sheared: &Weights<f64>,
         interval: Interval,
     ) -> Option<TriangleHit>;
+
+    /// What `evaluate` makes its answer of, where that does not need the sheared coordinates.
+    fn evaluate_certain(ray: &TriangleRay, corners: &Corners) -> Option<Evaluation>;
 }
 
 /// From the coordinates that decided: off by as much as those are.
@@ -78,22 +93,23 @@ impl TriangleRay {
     /// Expects a valid ray.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        let direction = ray.direction.to_array();
-        let [x, y, z] = direction.map(f32::abs);
+        /// The other axes for each that may be the main one; the fourth is none.
+        static NEXT: [u8; 4] = [1, 2, 0, 0];
+        static AFTER_NEXT: [u8; 4] = [2, 0, 1, 0];
+
+        // Four lanes at a time, and one store for each: a load that is wider than the stores before it waits for them.
+        let (origin, direction) = (ray.origin.extend(0.0), ray.direction.extend(1.0));
+        let magnitude = direction.abs();
+        let largest = greater(greater(magnitude.x, magnitude.y), magnitude.z);
         // The first of equal components, so that the choice is the same everywhere.
-        let kz = if x >= y && x >= z {
-            0
-        } else if y >= z {
-            1
-        } else {
-            2
-        };
-        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
+        let kz = (magnitude.cmpge(Vec4::splat(largest)).bitmask().trailing_zeros() & 3) as usize;
+        let (kx, ky) = (usize::from(NEXT[kz]), usize::from(AFTER_NEXT[kz]));
+        let per_z = direction / Vec4::splat(direction.to_array()[kz]);
         Self {
-            origin: ray.origin.to_array(),
-            direction: ray.direction.to_array(),
+            origin: origin.to_array(),
+            direction: direction.to_array(),
             axes: [kx, ky, kz],
-            shear: [direction[kx] / direction[kz], direction[ky] / direction[kz]],
+            per_z: per_z.to_array(),
         }
     }
 
@@ -104,8 +120,8 @@ impl TriangleRay {
         let from_origin = |axis: usize| triangle.axes[axis].map(|v| v - self.origin[axis]);
         let z = from_origin(kz);
         let shear = |row: [f32; 3], slope: f32| std::array::from_fn(|corner| row[corner] - slope * z[corner]);
-        let x: [f32; 3] = shear(from_origin(kx), self.shear[0]);
-        let y: [f32; 3] = shear(from_origin(ky), self.shear[1]);
+        let x: [f32; 3] = shear(from_origin(kx), self.per_z[kx]);
+        let y: [f32; 3] = shear(from_origin(ky), self.per_z[ky]);
 
         // Rounding keeps order, so the difference of two rounded products never has the wrong sign: it can only be
         // zero, or NaN where both overflowed. A nonzero sign settles it here; the rest is settled in f64, where these
@@ -121,6 +137,34 @@ impl TriangleRay {
             return None;
         }
         self.settle::<P>(triangle, &x, &y, interval).filter(|hit| interval.contains(hit.t) && hit.t.is_finite())
+    }
+
+    /// [`TriangleRay::hit`] for a triangle whose `f32` edge functions have one sign, none zero: it is taken for hit,
+    /// and what remains to tell is where.
+    #[inline(always)]
+    pub(crate) fn certain_hit<P: PrecisionMode>(
+        &self,
+        corners: &Corners,
+        interval: Interval,
+        triangle: impl FnOnce() -> Triangle,
+    ) -> Option<TriangleHit> {
+        match P::evaluate_certain(self, corners) {
+            Some(Evaluation::Inside(hit)) => interval.contains(hit.t).then_some(hit),
+            Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
+            _ => self.hit_slowly::<P>(&triangle(), interval),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn hit_slowly<P: PrecisionMode>(&self, triangle: &Triangle, interval: Interval) -> Option<TriangleHit> {
+        self.hit::<P>(triangle, interval)
+    }
+
+    #[inline(always)]
+    fn corners(&self, triangle: &Triangle) -> Corners {
+        let [kx, ky, kz] = self.axes;
+        [triangle.axes[kx], triangle.axes[ky], triangle.axes[kz]]
     }
 
     /// The exact decision on sheared coordinates, and the hit's parameters.
@@ -163,6 +207,11 @@ impl PrecisionMode for Fast {
     ) -> Option<TriangleHit> {
         Some(ray.interpolate(sheared, &ray.main_axis_distances(triangle)))
     }
+
+    #[inline(always)]
+    fn evaluate_certain(_ray: &TriangleRay, _corners: &Corners) -> Option<Evaluation> {
+        None
+    }
 }
 
 impl PrecisionMode for Accurate {
@@ -172,7 +221,7 @@ impl PrecisionMode for Accurate {
         sheared: &Weights<f64>,
         interval: Interval,
     ) -> Option<TriangleHit> {
-        match Evaluation::of::<f64>(ray, triangle) {
+        match Evaluation::inside(ray, &ray.corners(triangle)).unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle)) {
             Evaluation::Inside(hit) => Some(hit),
             Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => None,
             Evaluation::Outside => Some(within_the_band(ray, triangle, sheared)),
@@ -181,6 +230,11 @@ impl PrecisionMode for Accurate {
                 evaluate_slowly(ray, triangle, interval, || within_the_band(ray, triangle, sheared))
             }
         }
+    }
+
+    #[inline(always)]
+    fn evaluate_certain(ray: &TriangleRay, corners: &Corners) -> Option<Evaluation> {
+        Evaluation::inside(ray, corners)
     }
 }
 
@@ -197,7 +251,7 @@ fn evaluate_slowly(
         Evaluation::Inside(hit) => Some(hit),
         Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => None,
         Evaluation::Near { hit, t_per_volume, .. } => {
-            let t = t_per_volume * triangle.signed_volume(ray.origin);
+            let t = t_per_volume * triangle.signed_volume([ray.origin[0], ray.origin[1], ray.origin[2]]);
             Some(TriangleHit { t: t as f32, ..hit })
         }
         Evaluation::Outside | Evaluation::Uncertain => Some(otherwise()),
@@ -215,6 +269,12 @@ fn within_the_band(ray: &TriangleRay, triangle: &Triangle, sheared: &Weights<f64
 #[inline(always)]
 pub(super) fn edge_functions<T: Copy + Sub<Output = T> + Mul<Output = T>>(x: &[T; 3], y: &[T; 3]) -> Weights<T> {
     [x[2] * y[1] - y[2] * x[1], x[0] * y[2] - y[0] * x[2], x[1] * y[0] - y[1] * x[0]]
+}
+
+/// Without `f32::max`'s care for NaN.
+#[inline(always)]
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// Whether any is below zero, and whether any is above. A NaN is neither.

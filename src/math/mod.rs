@@ -7,4 +7,4 @@ mod float;
 
 pub(crate) use double_double::DoubleDouble;
 pub(crate) use expansion::Expansion;
-pub(crate) use float::{gamma, scale_by_power_of_two_near};
+pub(crate) use float::{UNIT_ROUNDOFF, gamma, scale_by_power_of_two_near};

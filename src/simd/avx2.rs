@@ -16,11 +16,11 @@ impl Avx2 {
 
 impl Simd for Avx2 {
     type F32x8 = __m256;
-    const IS_FUSED: bool = true;
 
     #[inline(always)]
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
         #[target_feature(enable = "avx2,fma")]
+        #[inline(never)]
         fn frame<K: SimdKernel>(simd: Avx2, kernel: K) -> K::Output {
             kernel.run(simd)
         }
@@ -46,6 +46,24 @@ impl Simd for Avx2 {
         // SAFETY: as above, and there is room for eight floats.
         unsafe { _mm256_storeu_ps(values.as_mut_ptr(), a) };
         values
+    }
+
+    #[inline(always)]
+    fn div(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_div_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn abs(self, a: __m256) -> __m256 {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a) }
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+        // SAFETY: the token proves that the CPU has FMA.
+        unsafe { _mm256_fmadd_ps(a, b, c) }
     }
 
     #[inline(always)]

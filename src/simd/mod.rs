@@ -36,8 +36,6 @@ pub(crate) trait SimdKernel {
 pub(crate) trait Simd: Copy + Send + Sync {
     type F32x8: Copy;
 
-    /// Whether [`Simd::mul_sub`] rounds once. It is for bounds only, where a rounding more or less does not show.
-    const IS_FUSED: bool;
 
     /// Runs a kernel where the compiler may use the instruction set.
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output;
@@ -48,6 +46,11 @@ pub(crate) trait Simd: Copy + Send + Sync {
     fn add(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     fn sub(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     fn mul(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    fn div(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    fn abs(self, a: Self::F32x8) -> Self::F32x8;
+    /// `a * b + c`.
+    /// One rounding or two: for bounds, where one more or less does not show.
+    fn mul_add(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
     /// `a * b - c`.
     fn mul_sub(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
     /// The lesser; `b` where either is NaN or both are equal.

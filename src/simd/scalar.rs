@@ -17,7 +17,6 @@ fn mask(a: [f32; LANES], b: [f32; LANES], holds: impl Fn(f32, f32) -> bool) -> u
 
 impl Simd for Scalar {
     type F32x8 = [f32; LANES];
-    const IS_FUSED: bool = false;
 
     #[inline(always)]
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
@@ -52,6 +51,21 @@ impl Simd for Scalar {
     #[inline(always)]
     fn mul(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
         lanewise(a, b, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn div(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
+        lanewise(a, b, |a, b| a / b)
+    }
+
+    #[inline(always)]
+    fn abs(self, a: [f32; LANES]) -> [f32; LANES] {
+        a.map(f32::abs)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: [f32; LANES], b: [f32; LANES], c: [f32; LANES]) -> [f32; LANES] {
+        self.add(self.mul(a, b), c)
     }
 
     #[inline(always)]

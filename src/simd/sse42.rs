@@ -28,11 +28,11 @@ fn mask(bits: [__m128; 2]) -> u32 {
 
 impl Simd for Sse42 {
     type F32x8 = [__m128; 2];
-    const IS_FUSED: bool = false;
 
     #[inline(always)]
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
         #[target_feature(enable = "sse4.2")]
+        #[inline(never)]
         fn frame<K: SimdKernel>(simd: Sse42, kernel: K) -> K::Output {
             kernel.run(simd)
         }
@@ -61,6 +61,25 @@ impl Simd for Sse42 {
             _mm_storeu_ps(values.as_mut_ptr().add(4), a[1]);
         }
         values
+    }
+
+    #[inline(always)]
+    fn div(self, a: [__m128; 2], b: [__m128; 2]) -> [__m128; 2] {
+        // SAFETY: SSE is part of x86-64.
+        halves(a, b, |a, b| unsafe { _mm_div_ps(a, b) })
+    }
+
+    #[inline(always)]
+    fn abs(self, a: [__m128; 2]) -> [__m128; 2] {
+        // SAFETY: SSE is part of x86-64.
+        let sign = unsafe { _mm_set1_ps(-0.0) };
+        // SAFETY: as above.
+        halves(a, [sign; 2], |a, sign| unsafe { _mm_andnot_ps(sign, a) })
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: [__m128; 2], b: [__m128; 2], c: [__m128; 2]) -> [__m128; 2] {
+        self.add(self.mul(a, b), c)
     }
 
     #[inline(always)]

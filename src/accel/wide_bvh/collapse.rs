@@ -49,7 +49,7 @@ pub(super) fn collapse(binary: Bvh, ids: Ids, context: &BuildContext) -> Result<
     let sah_cost = f64::from(collapse.cost(&binary.root, 1));
     context.release(collapse.plans);
     leaves.finish();
-    Ok(WideBvh { bounds: binary.bounds, root, nodes, leaves, depth, sah_cost })
+    Ok(WideBvh { bounds: binary.bounds, corners: binary.bounds.corners4(), root, nodes, leaves, depth, sah_cost })
 }
 
 impl<'a> Collapse<'a> {

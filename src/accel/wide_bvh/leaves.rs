@@ -70,10 +70,15 @@ impl Leaves {
 }
 
 impl<'a> Leaf<'a> {
-    /// One coordinate of one vertex of all triangles; what lies beyond the last one has no meaning.
+    /// One coordinate of the three vertices of all triangles; what lies beyond the last one has no meaning.
     #[inline(always)]
-    pub(super) fn row(&self, axis: usize, corner: usize) -> &'a [f32; LANES] {
-        let at = (3 * (axis & 3) + corner) * self.count;
+    pub(super) fn rows(&self, axis: usize) -> [&'a [f32; LANES]; 3] {
+        let first = 3 * (axis & 3) * self.count;
+        [self.row(first), self.row(first + self.count), self.row(first + 2 * self.count)]
+    }
+
+    #[inline(always)]
+    fn row(&self, at: usize) -> &'a [f32; LANES] {
         self.words[at..][..LANES].try_into().expect("the length is that of the array")
     }
 
@@ -83,13 +88,28 @@ impl<'a> Leaf<'a> {
         (1 << self.count) - 1
     }
 
+    /// One coordinate of the three vertices of one triangle.
+    #[inline(always)]
+    pub(super) fn corners(&self, axis: usize, lane: usize) -> [f32; 3] {
+        // What the compiler sees is inside the window.
+        let first = 3 * (axis & 3) * self.count + lane % LANES;
+        [self.words[first], self.words[first + self.count], self.words[first + 2 * self.count]]
+    }
+
     /// With geometry and primitive joined into one number, in place of the primitive: [`Leaves::resolve`] separates
     /// them.
     #[inline(always)]
     pub(super) fn triangle(&self, lane: usize) -> Triangle {
-        let word = |row: usize| self.words[row * self.count + lane];
-        let axes = std::array::from_fn(|axis| std::array::from_fn(|corner| word(3 * axis + corner)));
-        Triangle { axes, geometry_id: 0, primitive_id: word(9).to_bits() }
+        Triangle {
+            axes: [self.corners(0, lane), self.corners(1, lane), self.corners(2, lane)],
+            geometry_id: 0,
+            primitive_id: self.id(lane),
+        }
+    }
+
+    #[inline(always)]
+    fn id(&self, lane: usize) -> u32 {
+        self.words[9 * self.count + lane % LANES].to_bits()
     }
 }
 

@@ -4,13 +4,16 @@
 //! Source: Wald, Benthin, Boulos 2008, "Getting rid of packets: efficient SIMD single-ray traversal using
 //! multi-branching BVHs".
 
+mod box_test;
 mod collapse;
+mod leaf_test;
 mod leaves;
 mod node;
 mod traverse;
 #[cfg(any(test, debug_assertions))]
 mod validate;
 
+use glam::Vec4;
 use leaves::Leaves;
 use node::{Child, WideNode};
 
@@ -22,6 +25,8 @@ use crate::simd::Simd;
 
 pub(crate) struct WideBvh {
     bounds: Aabb,
+    /// Of the bounds, as rays want them.
+    corners: [Vec4; 2],
     root: Child,
     nodes: Vec<WideNode>,
     leaves: Leaves,

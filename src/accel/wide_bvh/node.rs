@@ -13,6 +13,8 @@ pub(super) struct Child(u32);
 impl Child {
     const LEAF: u32 = 1 << 31;
     const FIRST_BITS: u32 = 28;
+    /// Any leaf, where none is meant.
+    pub(super) const NONE: Self = Self(Self::LEAF);
     /// How many triangles a leaf's 28 bits can tell apart.
     pub(super) const MOST_TRIANGLES: usize = 1 << Self::FIRST_BITS;
 
@@ -59,7 +61,7 @@ const _: () = assert!(size_of::<WideNode>() == 256);
 impl WideNode {
     pub(super) const EMPTY: Self = Self {
         planes: [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3],
-        children: [Child(Child::LEAF); LANES],
+        children: [Child::NONE; LANES],
     };
 
     pub(super) fn set(&mut self, slot: usize, planes: &[[f32; 2]; 3], child: Child) {
