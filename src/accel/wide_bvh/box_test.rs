@@ -15,7 +15,8 @@ pub(super) trait BoxTest<S: Simd> {
 
 /// `plane * inverse - offset`: one operation a plane.
 pub(super) struct Oblique<S: Simd> {
-    near_side: [usize; 3],
+    /// For each axis where the near planes begin among both rows: 0 or 8.
+    near: [usize; 3],
     inverse: [S::F32x8; 3],
     near_offset: [S::F32x8; 3],
     far_offset: [S::F32x8; 3],
@@ -24,9 +25,9 @@ pub(super) struct Oblique<S: Simd> {
 impl<S: Simd> Oblique<S> {
     #[inline(always)]
     pub(super) fn new(simd: S, slabs: &ObliqueSlabs) -> Self {
-        let side = |axis: u32| (slabs.negative >> axis & 1) as usize;
+        let negative = slabs.negative as usize;
         Self {
-            near_side: [side(0), side(1), side(2)],
+            near: [negative << 3 & LANES, negative << 2 & LANES, negative << 1 & LANES],
             inverse: splat4(simd, slabs.inverse),
             near_offset: splat4(simd, slabs.near_offset),
             far_offset: splat4(simd, slabs.far_offset),
@@ -35,8 +36,10 @@ impl<S: Simd> Oblique<S> {
 
     #[inline(always)]
     fn planes<'a>(&self, node: &'a WideNode, axis: usize) -> (&'a [f32; LANES], &'a [f32; LANES]) {
-        let side = self.near_side[axis] & 1;
-        (&node.planes[axis][side], &node.planes[axis][side ^ 1])
+        let rows = node.planes[axis].as_flattened();
+        // The masks tell the compiler that the index is in range.
+        let near = self.near[axis] & LANES;
+        (row(rows, near), row(rows, near ^ LANES))
     }
 }
 
@@ -120,4 +123,9 @@ fn splat<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> [S::F32x8; 3] {
 #[inline(always)]
 fn splat4<S: Simd>(simd: S, v: Vec4) -> [S::F32x8; 3] {
     [simd.splat(v.x), simd.splat(v.y), simd.splat(v.z)]
+}
+
+#[inline(always)]
+fn row(rows: &[f32], at: usize) -> &[f32; LANES] {
+    rows[at..][..LANES].try_into().expect("the length is that of the array")
 }

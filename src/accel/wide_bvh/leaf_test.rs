@@ -62,8 +62,9 @@ enum State {
 struct Candidates {
     /// Which they are, as bits.
     lanes: u32,
-    /// Those of them that the scalar test surely takes, if `low` and `high` are inside the ray's interval.
+    /// Those of them that the scalar test surely takes, where `low` and `high` are inside the ray's interval.
     sure: u32,
+    /// Bounds of each `t`.
     low: [f32; LANES],
     high: [f32; LANES],
 }
@@ -94,19 +95,22 @@ impl<'a, S: Simd> LeafTest<'a, S> {
     #[inline(always)]
     pub(super) fn test<Q: Query, P: PrecisionMode>(&self, simd: S, child: Child, best: &mut Best) -> bool {
         let leaf = self.exact.bvh.leaves.leaf(child.triangles());
-        let Some(candidates) = self.candidates(simd, &leaf, best.high) else { return false };
+        let Some(candidates) = self.candidates(simd, &leaf) else { return false };
         let mut left = candidates.lanes;
         while left != 0 {
             let lane = left.trailing_zeros() as usize % LANES;
             left &= left - 1;
             let (low, high) = (candidates.low[lane], candidates.high[lane]);
+            if high < self.exact.interval.t_min || low > best.high {
+                continue;
+            }
             let is_certain = candidates.sure & (1 << lane) != 0;
             if is_certain && low >= self.exact.interval.t_min && high < best.low {
                 if Q::FIRST_HIT_ENDS {
                     return true;
                 }
                 *best = Best { low, high, place: Place { leaf: child, lane }, state: State::Bounded };
-            } else if !(low > best.high) {
+            } else {
                 let place = Place { leaf: child, lane };
                 if self.exact.decide::<Q, P, S>(simd, place, is_certain, best) {
                     return true;
@@ -122,7 +126,7 @@ impl<'a, S: Simd> LeafTest<'a, S> {
         self.exact.finish::<P>(best)
     }
 
-    /// Those that may be hit within `[t_min, t_max]`, if any.
+    /// Those that the line of the ray may hit, if any.
     ///
     /// A triangle is refused where the signs of its edge functions differ: a difference of rounded products is zero or
     /// has the right sign. Where they agree and none is zero it is taken for sure. With `u = 2^-24`, `X`, `Y` and `Z`
@@ -138,7 +142,7 @@ impl<'a, S: Simd> LeafTest<'a, S> {
     ///
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure.
     #[inline(always)]
-    fn candidates(&self, simd: S, leaf: &Leaf<'_>, t_max: f32) -> Option<Candidates> {
+    fn candidates(&self, simd: S, leaf: &Leaf<'_>) -> Option<Candidates> {
         let [kx, ky, kz] = self.exact.ray.axes;
         let z = from_origin(simd, leaf, kz, self.origin[2]);
         let x = shear(simd, from_origin(simd, leaf, kx, self.origin[0]), self.shear_x, z);
@@ -176,11 +180,6 @@ impl<'a, S: Simd> LeafTest<'a, S> {
         let t = simd.mul(simd.mul(weighted, per_sum), self.per_z);
         let t_error = simd.mul(z_error, simd.abs(self.per_z));
         let (low, high) = (simd.sub(t, t_error), simd.add(t, t_error));
-        let lanes =
-            lanes & !(simd.less(high, simd.splat(self.exact.interval.t_min)) | simd.less(simd.splat(t_max), low));
-        if lanes == 0 {
-            return None;
-        }
         let sure = simd.less(zero, least) | simd.less(most, zero);
         Some(Candidates { lanes, sure, low: simd.store(low), high: simd.store(high) })
     }

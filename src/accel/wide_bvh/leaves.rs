@@ -73,13 +73,8 @@ impl<'a> Leaf<'a> {
     /// One coordinate of the three vertices of all triangles; what lies beyond the last one has no meaning.
     #[inline(always)]
     pub(super) fn rows(&self, axis: usize) -> [&'a [f32; LANES]; 3] {
-        let first = 3 * (axis & 3) * self.count;
-        [self.row(first), self.row(first + self.count), self.row(first + 2 * self.count)]
-    }
-
-    #[inline(always)]
-    fn row(&self, at: usize) -> &'a [f32; LANES] {
-        self.words[at..][..LANES].try_into().expect("the length is that of the array")
+        let rows: &[f32; 3 * LANES] = array(self.words, 3 * (axis & 3) * self.count);
+        [array(rows, 0), array(rows, self.count), array(rows, 2 * self.count)]
     }
 
     /// Bit `i` for triangle `i`.
@@ -140,4 +135,10 @@ impl Ids {
         let geometry = self.starts.partition_point(|&start| start <= id) - 1;
         (geometry as u32, id - self.starts[geometry])
     }
+}
+
+/// `N` values from `at` on.
+#[inline(always)]
+fn array<const N: usize>(values: &[f32], at: usize) -> &[f32; N] {
+    values[at..][..N].try_into().expect("the length is that of the array")
 }
