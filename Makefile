@@ -5,29 +5,35 @@
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
 BUILD ?= build
-OUT ?= $(BUILD)/compare
 JOBS ?= $(shell nproc)
-SCENE ?= /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb \
-         gen:terrain gen:interior gen:hair $(wildcard ../shared/scenes/*.glb)
 
 ctest = ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
 .DEFAULT_GOAL := help
-.PHONY: help build compare test test-slow hard check test-rust test-c test-sanitized format clean packages packages-test cargo
+.PHONY: help build compare bench test test-slow hard check test-rust test-c test-sanitized format clean packages packages-test cargo
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-build: packages cargo ## Build the library and gnomon-compare
+build: packages cargo ## Build the library, gnomon-compare and gnomon-bench
 	cmake -S . -B $(BUILD)
-	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-compare
+	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-compare gnomon-bench
 
+compare: OUT ?= $(BUILD)/compare
+compare: SCENE ?= /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb \
+                  gen:terrain gen:interior gen:hair $(wildcard ../shared/scenes/*.glb)
 compare: build ## Compare with Embree; SCENE="file.glb gen:NAME ..." OUT=dir ARGS="options of gnomon-compare"
 	@mkdir -p $(OUT)
 	@status=0; \
 	$(BUILD)/bin/gnomon-compare --json $(OUT)/compare.json --html $(OUT)/report.html $(ARGS) $(SCENE) || status=$$?; \
 	[ $$status -gt 1 ] || echo "results: $(OUT)/compare.json and $(OUT)/report.html"; \
 	exit $$status
+
+bench: OUT ?= $(BUILD)/bench
+bench: build ## Measure against Embree and the project's bars, about 12 minutes; ARGS=--quick, SCENE= and OUT= as above
+	@mkdir -p $(OUT)
+	@$(BUILD)/bin/gnomon-bench --json $(OUT)/bench.json --html $(OUT)/report.html $(ARGS) $(SCENE)
+	@echo "results: $(OUT)/bench.json and $(OUT)/report.html"
 
 test: packages-test cargo check test-rust test-sanitized test-c ## Check the style and run all but the slow tests
 

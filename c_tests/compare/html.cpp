@@ -1,9 +1,9 @@
 #include "compare/html.hpp"
 
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <string_view>
+
+#include "compare/page.hpp"
 
 namespace harness {
 namespace {
@@ -11,21 +11,6 @@ namespace {
 constexpr std::string_view page =
 #include "compare/report.html.inc"
     ;
-
-void replace(std::string& text, std::string_view mark, std::string_view value) {
-    text.replace(text.find(mark), mark.size(), value);
-}
-
-std::string read_chart_js() {
-    std::ifstream file(GNOMON_CHART_JS, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// JSON inside a script element: no string of it may end the element.
-std::string script_safe(std::string json) {
-    for (std::size_t at = json.find("</"); at != std::string::npos; at = json.find("</", at + 3)) json.replace(at, 2, "<\\/");
-    return json;
-}
 
 /// RFC 4648, section 4.
 std::string base64(std::string_view bytes) {
@@ -48,10 +33,7 @@ std::string to_html(const nlohmann::ordered_json& results, const std::vector<Sce
     for (const SceneResult& scene : scenes) {
         if (!scene.picture_png.empty()) report["pictures"][scene.name] = "data:image/png;base64," + base64(scene.picture_png);
     }
-    std::string html(page);
-    replace(html, "{{RESULTS}}", script_safe(report.dump()));
-    replace(html, "{{CHART_JS}}", read_chart_js());
-    return html;
+    return fill_page(page, report);
 }
 
 }  // namespace harness

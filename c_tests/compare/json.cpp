@@ -9,8 +9,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json build_json(const SceneResult& scene, const BuildReport& build) {
     const double per_triangle = static_cast<double>(build.bytes) / static_cast<double>(build.triangles);
     return {{"scene", scene.name},
@@ -70,8 +68,10 @@ Json errors_json(const SceneResult& scene, const Errors& errors) {
 
 }  // namespace
 
-Json to_json(const Machine& machine, const Versions& versions, const std::vector<SceneResult>& scenes) {
-    Json json = {
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json heading_json(const Machine& machine, const Versions& versions) {
+    return {
         {"machine", {{"cpu", machine.cpu}, {"cores", machine.cores}, {"isa", machine.isa}, {"os", machine.os}}},
         {"versions",
          {{"gnomon", versions.gnomon},
@@ -79,10 +79,12 @@ Json to_json(const Machine& machine, const Versions& versions, const std::vector
           {"rustc", versions.rustc},
           {"compiler", versions.compiler},
           {"commit", versions.commit}}},
-        {"builds", Json::array()},
-        {"speeds", Json::array()},
-        {"errors", Json::array()},
     };
+}
+
+Json to_json(const Machine& machine, const Versions& versions, const std::vector<SceneResult>& scenes) {
+    Json json = heading_json(machine, versions);
+    for (const char* rows : {"builds", "speeds", "errors"}) json[rows] = Json::array();
     for (const SceneResult& scene : scenes) {
         for (const BuildReport& build : scene.builds) json["builds"].push_back(build_json(scene, build));
         for (const Speed& speed : scene.speeds) json["speeds"].push_back(speed_json(scene, speed));

@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <fstream>
-#include <stdexcept>
 
 #include "compare/html.hpp"
 #include "compare/json.hpp"
@@ -11,19 +9,13 @@
 #include "compare/replay.hpp"
 #include "compare/run.hpp"
 #include "compare/table.hpp"
+#include "harness/write_file.hpp"
 
 namespace {
 
 using namespace harness;
 
 enum ExitStatus { kept_contract = 0, broke_contract = 1, unusable_input = 2 };
-
-void write_file(const std::string& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) throw std::runtime_error(path + ": cannot be written");
-}
 
 void print_warnings(Notes& notes) {
     for (const std::string& warning : notes.warnings) std::fprintf(stderr, "gnomon-compare: %s\n", warning.c_str());

@@ -23,12 +23,6 @@ Vec3d viewing_direction(const Vec3d& extent) {
     return normalized(-towards_eye);
 }
 
-void aim(Camera& camera, const Vec3d& forward) {
-    camera.forward = normalized(forward);
-    camera.right = normalized(cross(camera.forward, {0, 1, 0}));
-    camera.up = cross(camera.right, camera.forward);
-}
-
 Vec3d corner(const Bounds& bounds, int index) {
     Vec3d point;
     for (int axis = 0; axis < 3; ++axis) point[axis] = (index >> axis & 1) ? bounds.upper[axis] : bounds.lower[axis];
@@ -71,6 +65,12 @@ Window seen_window(const Camera& camera, const Scene& scene) {
 
 }  // namespace
 
+void Camera::aim(const Vec3d& direction) {
+    forward = normalized(direction);
+    right = normalized(cross(forward, {0, 1, 0}));
+    up = cross(right, forward);
+}
+
 GnomonRay Camera::ray(double x, double y) const {
     const Vec3d direction = forward + (2 * x - 1) * half_width * right + (1 - 2 * y) * half_height * up;
     GnomonRay ray{};
@@ -89,13 +89,13 @@ Camera outside_camera(const Scene& scene) {
         throw SceneError(scene.name + ": no triangle has a finite vertex, so there is nothing to look at");
     const Vec3d centre = 0.5 * (bounds.lower + bounds.upper);
     Camera camera;
-    aim(camera, viewing_direction(bounds.upper - bounds.lower));
+    camera.aim(viewing_direction(bounds.upper - bounds.lower));
     const double distance = fitting_distance(camera, bounds, centre);
     camera.position = centre - (distance > 0 ? distance : 1.0) * camera.forward;
 
     // The box is fitted; what is in it is usually smaller and off its centre.
     const Window loose = seen_window(camera, scene);
-    aim(camera, camera.forward + 0.5 * (loose.left + loose.right) * camera.right + 0.5 * (loose.bottom + loose.top) * camera.up);
+    camera.aim(camera.forward + 0.5 * (loose.left + loose.right) * camera.right + 0.5 * (loose.bottom + loose.top) * camera.up);
     const Window window = seen_window(camera, scene);
     camera.half_width = std::max({-window.left, window.right, widest_tangent / 16});
     camera.half_height = std::max({-window.bottom, window.top, widest_tangent / 16});

@@ -53,7 +53,14 @@ Vec3f offset_origin(const SurfacePoint& point) {
     for (int axis = 0; axis < 3; ++axis) {
         const float rounded = static_cast<float>(static_cast<float>(point.position[axis]) + bound * point.normal[axis]);
         const double outward = point.normal[axis];
-        origin[axis] = outward == 0 ? rounded : std::nextafter(rounded, outward > 0 ? infinity : -infinity);
+        if (outward == 0) {
+            origin[axis] = rounded;
+            continue;
+        }
+        const float stepped = std::nextafter(rounded, outward > 0 ? infinity : -infinity);
+        // A step among the subnormals, over a long direction, would come to a t of 0, which is a hit.
+        const bool vanishes = std::abs(stepped) < std::numeric_limits<float>::min();
+        origin[axis] = vanishes ? std::copysign(std::numeric_limits<float>::min(), static_cast<float>(outward)) : stepped;
     }
     return origin;
 }
@@ -141,6 +148,27 @@ RaySet shadow_rays(const Scene& scene, const RaySet& primary, const std::vector<
     for (std::size_t i = 0; i < count && !points.empty(); ++i) {
         const Vec3f origin = offset_origin(points[i % points.size()]);
         set.rays.push_back(make_ray(origin, light.sample(rng) - to_double(origin), 1.0f));
+    }
+    return set;
+}
+
+RaySet connection_rays(const Scene& scene, const RaySet& primary, const std::vector<GnomonHit>& hits, std::size_t count,
+                       std::uint64_t seed) {
+    constexpr double grazing = 0.01;                  // as a cosine: two points of one plane face each other by rounding alone
+    constexpr float short_of_the_end = 1 - 0x1p-10f;  // the surface there must not be in the way, whatever an engine's error of t
+    constexpr std::size_t most_tries = 64;            // for one ray: on a convex surface no two points face each other
+    Rng rng(seed);
+    const std::vector<SurfacePoint> points = surface_points(scene, primary, hits);
+    RaySet set{"shadow", true, {}};
+    set.rays.reserve(count);
+    for (std::size_t tries = 0; set.rays.size() < count && tries < most_tries * count && !points.empty(); ++tries) {
+        const SurfacePoint& from = points[tries % points.size()];
+        const SurfacePoint& to = points[rng.below(points.size())];
+        const Vec3d between = to.position - from.position;
+        const double least_cosine = grazing * length(between);
+        if (!(dot(between, from.normal) > least_cosine && dot(between, to.normal) < -least_cosine)) continue;
+        const Vec3f origin = offset_origin(from);
+        set.rays.push_back(make_ray(origin, to_double(offset_origin(to)) - to_double(origin), short_of_the_end));
     }
     return set;
 }

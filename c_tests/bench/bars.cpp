@@ -1,0 +1,253 @@
+#include "bench/bars.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "bench/growth.hpp"
+#include "bench/statistics.hpp"
+#include "compare/text_table.hpp"
+
+namespace harness {
+namespace {
+
+constexpr std::array ray_kinds = {"primary", "bounce", "shadow", "random"};
+constexpr std::array built_up = {"spaceship", "mansion", "dsub62", "2cylinderengine"};  // architecture and CAD
+constexpr std::size_t large_scene = 500'000;
+constexpr std::size_t least_of_a_million = 800'000, most_of_a_million = 1'100'000;
+constexpr double most_us_per_degenerate_ray = 20;
+
+/// A camera that sees less, or bounces of which nearly all leave the scene at once, measure calls rather than traversal.
+constexpr double least_hit_share_of_camera = 0.5, least_hit_share_of_bounces = 0.05;
+
+/// One figure of one scene.
+struct Sample {
+    double value;
+    std::string where;
+};
+using Samples = std::vector<Sample>;
+
+std::string lowercase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+bool is_built_up(const SceneBench& scene) {
+    const std::string name = lowercase(scene.name);
+    return std::any_of(built_up.begin(), built_up.end(), [&](const char* part) { return name.find(part) != std::string::npos; });
+}
+
+struct Wanted {
+    std::string kind;
+    CallForm call = CallForm::fresh;
+    bool scaling = false;  // two threads against one
+    std::size_t least_triangles = 0;
+    bool built_up_only = false;
+    std::function<bool(const BuildTiming&)> build = [](const BuildTiming& build) { return build.contender == "gnomon"; };
+};
+
+void collect(const SceneBench& scene, const Wanted& wanted, Samples& samples) {
+    for (const Timing& timing : scene.timings) {
+        const RaySetInfo& set = scene.ray_sets[timing.ray_set];
+        const bool blind = (set.kind == "primary" && set.hit_share < least_hit_share_of_camera) ||
+                           (set.kind == "bounce" && set.hit_share < least_hit_share_of_bounces);
+        const bool fits = (wanted.kind.empty() || set.kind == wanted.kind) && timing.call == wanted.call && timing.ratio &&
+                          (timing.threads > 1) == wanted.scaling && wanted.build(scene.builds[timing.build]) && !blind;
+        if (fits) samples.push_back({*timing.ratio, scene.name + (set.view.empty() ? "" : " " + set.view)});
+    }
+}
+
+Samples samples_of(const BenchResults& results, const Wanted& wanted) {
+    for (const bool generated : {false, true}) {
+        Samples samples;
+        for (const SceneBench& scene : results.scenes) {
+            if (scene.generated != generated || scene.triangle_count < wanted.least_triangles) continue;
+            if (wanted.built_up_only && !is_built_up(scene)) continue;
+            collect(scene, wanted, samples);
+        }
+        if (!samples.empty()) return samples;
+    }
+    return {};
+}
+
+double median_of(const Samples& samples) {
+    std::vector<double> values;
+    for (const Sample& sample : samples) values.push_back(sample.value);
+    return median(values);
+}
+
+bool by_value(const Sample& a, const Sample& b) { return a.value < b.value; }
+
+/// The median must not be below `least`, nor any scene below `least_anywhere`.
+Bar speed_bar(const std::string& what, const Samples& samples, double least, const std::string& stretch,
+              std::optional<double> least_anywhere = {}) {
+    Bar bar;
+    bar.what = what;
+    bar.bar = ">= " + figure(least, "%.2f");
+    if (least_anywhere) bar.bar += ", none < " + figure(*least_anywhere, "%.2f");
+    bar.stretch = stretch;
+    bar.sample_count = samples.size();
+    if (samples.empty()) return bar;
+    bar.value = median_of(samples);
+    bar.measured = figure(*bar.value, "%.2f");
+    const Sample& worst = *std::min_element(samples.begin(), samples.end(), by_value);
+    bar.worst = worst.value;
+    bar.worst_where = worst.where;
+    bar.measured += " (worst " + figure(worst.value, "%.2f") + ", " + worst.where + ")";
+    const bool pass = *bar.value >= least && (!least_anywhere || *bar.worst >= *least_anywhere);
+    bar.verdict = pass ? BarVerdict::pass : BarVerdict::short_of;
+    return bar;
+}
+
+/// What counts, the median or the worst, must not be above `most`.
+enum class Counts { median, worst };
+Bar cost_bar(const std::string& what, const Samples& samples, Counts counts, double most, const std::string& unit,
+             const std::string& stretch) {
+    Bar bar;
+    bar.what = what;
+    bar.bar = "<= " + figure(most, "%.3g") + unit;
+    bar.stretch = stretch;
+    bar.sample_count = samples.size();
+    if (samples.empty()) return bar;
+    const Sample& worst = *std::max_element(samples.begin(), samples.end(), by_value);
+    bar.value = median_of(samples);
+    bar.worst = worst.value;
+    bar.worst_where = worst.where;
+    const double counted = counts == Counts::median ? *bar.value : *bar.worst;
+    bar.measured = figure(counted, "%.2f") + unit;
+    if (counts == Counts::median && samples.size() > 1)
+        bar.measured += " (worst " + figure(worst.value, "%.2f") + ", " + worst.where + ")";
+    if (counts == Counts::worst) bar.measured += " (" + worst.where + ")";
+    bar.verdict = counted <= most ? BarVerdict::pass : BarVerdict::short_of;
+    return bar;
+}
+
+bool is_not_built(const BenchResults& results, const std::string& contender) {
+    return std::any_of(results.scenes.begin(), results.scenes.end(), [&](const SceneBench& scene) {
+        return std::find(scene.not_built.begin(), scene.not_built.end(), contender) != scene.not_built.end();
+    });
+}
+
+/// A row without a figure because the library has nothing to measure.
+Bar unless_built(Bar bar, bool not_built) {
+    if (bar.sample_count == 0 && not_built) bar.verdict = BarVerdict::not_built;
+    return bar;
+}
+
+Samples build_samples(const BenchResults& results, const std::string& contender) {
+    Samples samples;
+    for (const SceneBench& scene : results.scenes) {
+        if (scene.triangle_count < least_of_a_million || scene.triangle_count > most_of_a_million) continue;
+        for (const BuildTiming& build : scene.builds) {
+            if (build.contender == contender && build.time_ratio) samples.push_back({*build.time_ratio, scene.name});
+        }
+    }
+    return samples;
+}
+
+Samples byte_samples(const BenchResults& results) {
+    Samples samples;
+    for (const SceneBench& scene : results.scenes) {
+        for (const BuildTiming& build : scene.builds) {
+            if (build.contender != "gnomon") continue;
+            samples.push_back({static_cast<double>(build.report.bytes) / static_cast<double>(scene.triangle_count), scene.name});
+        }
+    }
+    return samples;
+}
+
+void add_single_call_bars(std::vector<Bar>& bars, const BenchResults& results) {
+    for (const char* kind : ray_kinds) {
+        bars.push_back(speed_bar(std::string("fresh, ") + kind, samples_of(results, {.kind = kind}), 1.12, "1.3", 0.97));
+    }
+    for (const char* kind : ray_kinds) {
+        const Samples samples = samples_of(results, {.kind = kind, .call = CallForm::prefilled});
+        bars.push_back(speed_bar(std::string("prefilled, ") + kind, samples, 1.03, "1.2", 0.92));
+    }
+    const auto is_fast = [](const BuildTiming& build) { return build.contender == "gnomon fast"; };
+    const auto is_avx2 = [](const BuildTiming& build) {
+        return build.report.isa == "avx2" && (build.contender == "gnomon" || build.contender == "gnomon avx2");
+    };
+    const auto is_high = [](const BuildTiming& build) { return build.contender == "gnomon high"; };
+    for (const char* kind : ray_kinds) {
+        const Samples samples = samples_of(results, {.kind = kind, .build = is_fast});
+        bars.push_back(speed_bar(std::string("fresh, FAST, ") + kind, samples, 1.17, "1.35"));
+    }
+    for (const char* kind : ray_kinds) {
+        const Samples samples = samples_of(results, {.kind = kind, .build = is_avx2});
+        bars.push_back(speed_bar(std::string("fresh, AVX2, ") + kind, samples, 1.08, "1.35"));
+    }
+    for (const char* kind : ray_kinds) {
+        const Samples samples = samples_of(results, {.kind = kind, .built_up_only = true, .build = is_high});
+        const Bar bar = speed_bar(std::string("fresh, HIGH / Embree HIGH, architecture and CAD, ") + kind, samples, 1.2, "1.5");
+        bars.push_back(unless_built(bar, is_not_built(results, "gnomon high")));
+    }
+}
+
+void add_batch_bars(std::vector<Bar>& bars, const BenchResults& results) {
+    struct BatchBar {
+        const char *kind, *stretch;
+        double least;
+    };
+    for (const auto& [kind, stretch, least] : {BatchBar{"bounce", "2.0", 1.6}, {"random", "3.0", 2.2}, {"shadow", "2.5", 2.0}}) {
+        const Samples samples = samples_of(results, {.kind = kind, .call = CallForm::batch, .least_triangles = large_scene});
+        bars.push_back(speed_bar("batch / Embree prefilled, >= 500k triangles, " + std::string(kind), samples, least, stretch));
+    }
+    const Samples camera = samples_of(results, {.kind = "primary", .call = CallForm::batch});
+    bars.push_back(speed_bar("batch of camera rays / Embree's best", camera, 1.4, "1.8"));
+    for (const char* kind : {"bounce", "random", "shadow"}) {
+        const Samples samples = samples_of(results, {.kind = kind, .call = CallForm::batch, .scaling = true});
+        bars.push_back(speed_bar("batch, two threads / one, " + std::string(kind), samples, 1.85, "1.95"));
+    }
+}
+
+void add_build_bars(std::vector<Bar>& bars, const BenchResults& results) {
+    bars.push_back(cost_bar("bytes a triangle", byte_samples(results), Counts::worst, 50, "", ""));
+    // A build option to come: its rows will come from a contender "gnomon compact".
+    bars.push_back(unless_built(cost_bar("compact bytes", {}, Counts::worst, 36, "", "30"), true));
+    bars.push_back(cost_bar("build of 10^6 triangles, MEDIUM / Embree MEDIUM", build_samples(results, "gnomon"), Counts::median,
+                            1.2, "x the time", "0.8x"));
+    const Bar high = cost_bar("build of 10^6 triangles, HIGH / Embree HIGH", build_samples(results, "gnomon high"),
+                              Counts::median, 1.0, "x the time", "0.6x");
+    bars.push_back(unless_built(high, is_not_built(results, "gnomon high")));
+}
+
+void add_limit_bars(std::vector<Bar>& bars, const BenchResults& results) {
+    Samples steps;
+    for (const Growth& growth : results.growth) {
+        if (growth.engine != "gnomon" || growth.step == 0) continue;
+        steps.push_back({growth.step / growth.n_log_n_step, grouped(growth.triangle_count) + " triangles"});
+    }
+    bars.push_back(cost_bar("build time of 10 times the triangles / n log n", steps, Counts::worst, growth_margin, "", ""));
+    Samples rays;
+    for (const Degenerate& row : results.degenerate) {
+        if (row.engine == "gnomon" && row.ray_count > 0) rays.push_back({row.worst_us, row.scene});
+    }
+    bars.push_back(cost_bar("slowest ray of degenerate scenes", rays, Counts::worst, most_us_per_degenerate_ray, " us", ""));
+}
+
+}  // namespace
+
+std::vector<Bar> judge_bars(const BenchResults& results) {
+    std::vector<Bar> bars;
+    add_single_call_bars(bars, results);
+    add_batch_bars(bars, results);
+    add_build_bars(bars, results);
+    add_limit_bars(bars, results);
+    return bars;
+}
+
+std::string verdict_name(BarVerdict verdict) {
+    switch (verdict) {
+        case BarVerdict::pass:
+            return "pass";
+        case BarVerdict::short_of:
+            return "short";
+        case BarVerdict::not_built:
+            return "not built";
+        default:
+            return "not measured";
+    }
+}
+
+}  // namespace harness

@@ -1,0 +1,87 @@
+"""Prints the README's tables from what gnomon-bench wrote.
+
+    markdown.py BENCH_JSON...       several: runs of different scenes or parts, put together
+"""
+
+import json
+import pathlib
+import sys
+
+KINDS = ["primary", "bounce", "shadow", "random"]
+
+
+def table(header, rows):
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def figure(value, digits=2):
+    return "–" if value is None else f"{value:.{digits}f}"
+
+
+def find(rows, **wanted):
+    return next((row for row in rows if all(row[key] == value for key, value in wanted.items())), None)
+
+
+def ratio(results, scene, view, kind, call, threads=1):
+    row = find(results["speeds"], scene=scene, view=view, ray_kind=kind, contender="gnomon", call=call, threads=threads)
+    return row and row["ratio"]
+
+
+def views(results, scene, kind, call):
+    """Outside / inside; random rays have no view."""
+    shown = [None] if kind == "random" else ["outside", "inside"]
+    return " / ".join(figure(ratio(results, scene, view, kind, call)) for view in shown)
+
+
+def scene_row(results, scene):
+    name = scene["scene"]
+    ours, theirs = (find(results["builds"], scene=name, contender=contender) for contender in ("gnomon", "embree"))
+    bytes_a_triangle = [figure(build and build["bytes_per_triangle"], 0) for build in (ours, theirs)]
+    return [name, f"{scene['triangles']:,}", *(views(results, name, kind, "fresh") for kind in KINDS),
+            *(views(results, name, kind, "batch") for kind in KINDS), figure(ours["time_ratio_to_embree"], 1),
+            " / ".join(bytes_a_triangle)]
+
+
+def scene_table(results):
+    header = ["scene", "triangles", *KINDS, *(f"batch {kind}" for kind in KINDS), "build", "bytes a triangle"]
+    return table(header, [scene_row(results, scene) for scene in results["scenes"]])
+
+
+def bar_table(results):
+    header = ["what", "bar", "stretch", "measured", ""]
+    return table(header, [[bar["what"], bar["bar"], bar["stretch"] or "–", bar["measured"] or "–", bar["verdict"]]
+                          for bar in results["bars"]])
+
+
+def growth_table(results):
+    header = ["engine", "triangles", "build s", "bytes a triangle", *(f"ns {kind}" for kind in KINDS)]
+    return table(header, [[row["engine"], f"{row['triangles']:,}", figure(row["build_seconds"], 4), figure(row["bytes_per_triangle"], 1),
+                           *(figure(row["ns_per_ray"].get(kind), 0) for kind in KINDS)] for row in results["growth"]])
+
+
+def heading(results):
+    machine, versions = results["machine"], results["versions"]
+    return (f"{machine['cpu']}, {machine['cores']} cores, {machine['isa']}; gnomon {versions['commit']}, "
+            f"Embree {versions['embree'] or 'missing'}, {versions['rustc']}")
+
+
+def to_markdown(results):
+    tables = [scene_table(results), bar_table(results)]
+    if results["growth"]:
+        tables.append(growth_table(results))
+    return "\n\n".join([heading(results), *tables])
+
+
+def merged(runs):
+    """Bars are those of the last run: they cannot be put together."""
+    results = runs[-1]
+    for run in runs[:-1]:
+        for name, rows in run.items():
+            if isinstance(rows, list) and name not in ("bars", "notes"):
+                results[name] = rows + results[name]
+    return results
+
+
+if __name__ == "__main__":
+    print(to_markdown(merged([json.loads(pathlib.Path(path).read_text()) for path in sys.argv[1:]])))

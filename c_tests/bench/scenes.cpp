@@ -1,0 +1,54 @@
+#include "bench/scenes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+namespace harness {
+namespace {
+
+constexpr std::size_t least_triangles = 50'000;  // performance.md's scenes; smaller ones live in the caches
+constexpr std::array quick_names = {"2cylinderengine", "spaceship", "stanford_bunny", "stanford_dragon",
+                                    "stk_ravenbridge_mansion"};
+constexpr std::array quick_generated = {"gen:interior:1000000"};
+constexpr std::array generated = {"gen:interior:1000000", "gen:terrain:1000000", "gen:icosphere:1000000"};
+constexpr std::string_view assimp_engine = GNOMON_ASSIMP_MODELS "/2CylinderEngine-glTF-Binary/2CylinderEngine.glb";
+
+std::vector<std::string> shared_scenes() {
+    std::vector<std::string> paths;
+    std::error_code missing;
+    for (const auto& entry : std::filesystem::directory_iterator(GNOMON_SHARED_SCENES, missing)) {
+        if (entry.path().extension() == ".glb") paths.push_back(entry.path().string());
+    }
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+bool is_quick(const std::string& path) {
+    const std::string name = std::filesystem::path(path).stem().string();
+    return std::find(quick_names.begin(), quick_names.end(), name) != quick_names.end();
+}
+
+}  // namespace
+
+std::vector<SceneChoice> choose_scenes(const BenchOptions& options, std::vector<std::string>& notes) {
+    std::vector<SceneChoice> choices;
+    for (const std::string& spec : options.scenes) choices.push_back({spec, 0});
+    if (!choices.empty()) return choices;
+    for (const std::string& path : shared_scenes()) {
+        if (!options.quick || is_quick(path)) choices.push_back({path, least_triangles});
+    }
+    if (choices.empty()) {
+        notes.push_back("no scenes in " GNOMON_SHARED_SCENES ": measured assimp's 2CylinderEngine and generated scenes alone");
+        if (std::filesystem::exists(assimp_engine)) choices.push_back({std::string(assimp_engine), least_triangles});
+    }
+    if (options.quick) {
+        for (const char* spec : quick_generated) choices.push_back({spec, 0});
+    } else {
+        for (const char* spec : generated) choices.push_back({spec, 0});
+    }
+    return choices;
+}
+
+}  // namespace harness

@@ -1,0 +1,164 @@
+#include "bench/table.hpp"
+
+#include <algorithm>
+
+#include "bench/bars.hpp"
+#include "bench/trace.hpp"
+#include "compare/text_table.hpp"
+
+namespace harness {
+namespace {
+
+using Row = TextTable::Row;
+
+std::string build_table(const SceneBench& scene) {
+    TextTable table(
+        3, {"engine", "structure", "isa", "seconds", "least", "x Embree's time", "against", "bytes/tri", "nodes", "depth"});
+    for (const BuildTiming& build : scene.builds) {
+        if (build.repeats == 0) continue;
+        const double per_triangle = static_cast<double>(build.report.bytes) / static_cast<double>(scene.triangle_count);
+        table.add({build.contender, build.report.structure, build.report.isa, figure(build.report.seconds, "%.4f"),
+                   figure(build.least_seconds, "%.4f"), build.time_ratio ? figure(*build.time_ratio, "%.2f") : "-",
+                   build.reference.empty() ? "-" : build.reference, figure(per_triangle, "%.1f"),
+                   build.report.nodes ? grouped(build.report.nodes) : "-",
+                   build.report.depth ? std::to_string(build.report.depth) : "-"});
+    }
+    for (const std::string& name : scene.not_built) table.add({name, "not built"});
+    const std::uint32_t threads = scene.builds.empty() ? 0 : scene.builds.front().report.threads;
+    return "builds (" + std::to_string(threads) + " threads, interleaved, median; below 1 is faster than Embree)\n" +
+           table.text();
+}
+
+/// A contender in a call form: a row over all ray sets.
+struct Line {
+    std::size_t build;
+    CallForm call;
+    std::uint32_t threads;
+    bool operator==(const Line&) const = default;
+};
+
+std::vector<Line> lines_of(const SceneBench& scene) {
+    std::vector<Line> lines;
+    for (const Timing& timing : scene.timings) {
+        const Line line{timing.build, timing.call, timing.threads};
+        if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+    }
+    return lines;
+}
+
+Row header_of(const SceneBench& scene, Row row) {
+    for (const RaySetInfo& set : scene.ray_sets) row.push_back((set.view.empty() ? "" : set.view + " ") + set.kind);
+    return row;
+}
+
+const Timing* find_timing(const SceneBench& scene, const Line& line, std::size_t ray_set) {
+    for (const Timing& timing : scene.timings) {
+        if (Line{timing.build, timing.call, timing.threads} == line && timing.ray_set == ray_set) return &timing;
+    }
+    return nullptr;
+}
+
+/// One row a contender and call form; `cell` makes the text of a timing.
+template <class Cell>
+void add_lines(TextTable& table, const SceneBench& scene, Cell cell) {
+    for (const Line& line : lines_of(scene)) {
+        Row row = {scene.builds[line.build].contender, form_name(line.call) + (line.threads > 1 ? ", threads" : "")};
+        bool any = false;
+        for (std::size_t set = 0; set < scene.ray_sets.size(); ++set) {
+            const Timing* timing = find_timing(scene, line, set);
+            row.push_back(timing ? cell(*timing) : "-");
+            any |= row.back() != "-";
+        }
+        if (any) table.add(std::move(row));
+    }
+}
+
+std::string ratio_table(const SceneBench& scene) {
+    TextTable table(2, header_of(scene, {"x Embree", "call"}));
+    add_lines(table, scene, [](const Timing& timing) { return timing.ratio ? figure(*timing.ratio, "%.2f") : "-"; });
+    return table.text();
+}
+
+std::string ns_table(const SceneBench& scene) {
+    TextTable table(2, header_of(scene, {"ns a ray", "call"}));
+    add_lines(table, scene, [](const Timing& timing) { return figure(timing.ns_per_ray, "%.0f"); });
+    Row hits = {"rays that hit", ""};
+    for (const RaySetInfo& set : scene.ray_sets) hits.push_back(figure(100 * set.hit_share, "%.0f %%"));
+    table.add(std::move(hits));
+    Row differing = {"answers unlike Embree's", ""};
+    for (std::size_t set = 0; set < scene.ray_sets.size(); ++set) {
+        std::string text = "-";
+        for (const Timing& timing : scene.timings) {
+            const bool own = scene.builds[timing.build].contender == "gnomon" && timing.call == CallForm::fresh;
+            if (own && timing.ray_set == set && timing.differing) text = grouped(*timing.differing);
+        }
+        differing.push_back(text);
+    }
+    table.add(std::move(differing));
+    return table.text();
+}
+
+}  // namespace
+
+std::string scene_text(const SceneBench& scene) {
+    return scene.name + ": " + grouped(scene.triangle_count) + " triangles\n\n" + build_table(scene) +
+           "\nspeed (median of the repeats' ratios, above 1 is faster than Embree's default; HIGH: than Embree's HIGH; batch: "
+           "camera "
+           "rays against\nEmbree's best, others against its prefilled single calls; threads: against one thread)\n" +
+           ratio_table(scene) + "\n" + ns_table(scene);
+}
+
+std::string call_cost_text(const std::vector<CallCost>& costs) {
+    TextTable table(2, {"scene", "engine", "ns, least", "median"});
+    for (const CallCost& cost : costs) {
+        table.add({cost.scene, cost.engine, figure(cost.least_ns, "%.1f"), figure(cost.median_ns, "%.1f")});
+    }
+    return "what a closest-hit call costs, fresh\n" + table.text();
+}
+
+std::string growth_text(const std::vector<Growth>& steps) {
+    Row header = {"engine", "triangles", "build s", "step", "n log n", "", "bytes/tri"};
+    if (!steps.empty()) {
+        for (const auto& [kind, ns] : steps.front().ns_per_ray) header.push_back("ns " + kind);
+    }
+    TextTable table(1, header);
+    for (const Growth& step : steps) {
+        const bool first = step.step == 0;
+        Row row = {step.engine,
+                   grouped(step.triangle_count),
+                   figure(step.build_seconds, "%.5f"),
+                   first ? "-" : figure(step.step, "%.1f"),
+                   first ? "-" : figure(step.n_log_n_step, "%.1f"),
+                   first                 ? ""
+                   : step.within_n_log_n ? "ok"
+                                         : "worse",
+                   figure(step.bytes_per_triangle, "%.1f")};
+        for (const auto& [kind, ns] : step.ns_per_ray) row.push_back(figure(ns, "%.0f"));
+        table.add(std::move(row));
+    }
+    return "growth (least build time; step: over the time of the step before)\n" + table.text();
+}
+
+std::string degenerate_text(const std::vector<Degenerate>& rows) {
+    TextTable table(2, {"scene", "engine", "triangles", "build s", "mean us a ray", "worst", "rays"});
+    for (const Degenerate& row : rows) {
+        if (!row.failure.empty()) {
+            table.add({row.scene, row.engine, grouped(row.triangle_count), row.failure});
+            continue;
+        }
+        table.add({row.scene, row.engine, grouped(row.triangle_count), figure(row.build_seconds, "%.4f"),
+                   figure(row.mean_us, "%.2f"), figure(row.worst_us, "%.2f"), grouped(row.ray_count)});
+    }
+    return "degenerate scenes (each ray's least time of three)\n" + table.text();
+}
+
+std::string bars_text(const std::vector<Bar>& bars) {
+    TextTable table(6, {"what", "bar", "stretch", "", "measured", "of"});
+    for (const Bar& bar : bars) {
+        table.add({bar.what, bar.bar, bar.stretch.empty() ? "-" : bar.stretch, verdict_name(bar.verdict),
+                   bar.measured.empty() ? "-" : bar.measured, std::to_string(bar.sample_count)});
+    }
+    return "bars (median over scenes and views, one thread, ratio to Embree's default, ACCURATE unless said)\n" + table.text();
+}
+
+}  // namespace harness

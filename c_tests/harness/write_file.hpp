@@ -1,0 +1,18 @@
+// A whole file at once.
+#pragma once
+
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace harness {
+
+/// Throws std::runtime_error that names the file.
+inline void write_file(const std::string& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw std::runtime_error(path + ": cannot be written");
+}
+
+}  // namespace harness
