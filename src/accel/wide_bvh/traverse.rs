@@ -112,22 +112,30 @@ fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
             let node = &bvh.nodes[child.node_index()];
             let (mut hits, enter) = boxes.test(simd, node, t_min, t_max);
             if hits != 0 {
-                if hits & (hits - 1) == 0 {
-                    child = node.children[hits.trailing_zeros() as usize % LANES];
+                let first = next_slot(&mut hits);
+                if hits == 0 {
+                    child = node.children[first];
                     continue;
                 }
                 let enter = simd.store(enter);
-                let bottom = stack.len();
-                while hits != 0 {
-                    let slot = hits.trailing_zeros() as usize % LANES;
-                    hits &= hits - 1;
-                    let waiting = node.children[slot];
-                    if !waiting.is_leaf() {
-                        prefetch(&bvh.nodes[waiting.node_index()]);
-                    }
-                    push::<Q>(&mut stack, bottom, Pending { enter: enter[slot], child: waiting });
+                let pending = |slot: usize| Pending { enter: enter[slot], child: node.children[slot] };
+                let (mut near, mut far) = (pending(first), pending(next_slot(&mut hits)));
+                // Where any hit will do the largest box comes first, which is the last one.
+                if Q::FIRST_HIT_ENDS || far.enter < near.enter {
+                    (near, far) = (far, near);
                 }
-                child = stack.pop().expect("two were pushed").child;
+                let bottom = stack.len();
+                wait(bvh, &mut stack, far);
+                if hits == 0 {
+                    child = near.child;
+                    continue;
+                }
+                wait(bvh, &mut stack, near);
+                while hits != 0 {
+                    wait(bvh, &mut stack, pending(next_slot(&mut hits)));
+                    sort_last::<Q>(&mut stack, bottom);
+                }
+                child = stack.pop().expect("three were pushed").child;
                 continue;
             }
         }
@@ -141,14 +149,31 @@ fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
     }
 }
 
-/// Puts a child above those from `bottom` on that the ray enters later; without order where any hit will do.
+/// Takes the lowest bit.
 #[inline(always)]
-fn push<Q: Query>(stack: &mut Stack, bottom: usize, pending: Pending) {
-    let mut at = stack.len();
+fn next_slot(hits: &mut u32) -> usize {
+    let slot = hits.trailing_zeros() as usize % LANES;
+    *hits &= *hits - 1;
+    slot
+}
+
+#[inline(always)]
+fn wait(bvh: &WideBvh, stack: &mut Stack, pending: Pending) {
+    if !pending.child.is_leaf() {
+        prefetch(&bvh.nodes[pending.child.node_index()]);
+    }
     stack.push(pending);
+}
+
+/// Puts the last child among those from `bottom` on, the one that the ray enters first on top; without order where any
+/// hit will do.
+#[inline(always)]
+fn sort_last<Q: Query>(stack: &mut Stack, bottom: usize) {
     if Q::FIRST_HIT_ENDS {
         return;
     }
+    let mut at = stack.len() - 1;
+    let pending = stack[at];
     while at > bottom && stack[at - 1].enter < pending.enter {
         stack[at] = stack[at - 1];
         at -= 1;
