@@ -23,7 +23,10 @@ struct Pending {
 /// A wide level is a binary level at least, and leaves all children but one waiting.
 const MOST_PENDING: usize = MOST_LEVELS * (LANES - 1);
 
-type Stack = ArrayVec<Pending, MOST_PENDING>;
+/// Aligned, because a compiler that has something to align in a frame aligns the registers that it spills there too: else
+/// half of them cross a cache line.
+#[repr(align(32))]
+struct Stack(ArrayVec<Pending, MOST_PENDING>);
 
 pub(super) struct Traversal<'a, Q, P, I, T> {
     bvh: &'a WideBvh,
@@ -100,7 +103,8 @@ fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
     let t_min = simd.splat(boxes.scale_time(ray.t_min));
     let mut t_max = boxes.scale_time(ray.t_max);
     let mut best = Best::none(ray);
-    let mut stack = Stack::new_const();
+    let mut aligned = Stack(ArrayVec::new_const());
+    let stack = &mut aligned.0;
     let mut child = bvh.root;
     loop {
         if child.is_leaf() {
@@ -125,15 +129,15 @@ fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
                     (near, far) = (far, near);
                 }
                 let bottom = stack.len();
-                wait(bvh, &mut stack, far);
+                wait(bvh, stack, far);
                 if hits == 0 {
                     child = near.child;
                     continue;
                 }
-                wait(bvh, &mut stack, near);
+                wait(bvh, stack, near);
                 while hits != 0 {
-                    wait(bvh, &mut stack, pending(next_slot(&mut hits)));
-                    sort_last::<Q>(&mut stack, bottom);
+                    wait(bvh, stack, pending(next_slot(&mut hits)));
+                    sort_last::<Q>(stack, bottom);
                 }
                 child = stack.pop().expect("three were pushed").child;
                 continue;
@@ -158,7 +162,7 @@ fn next_slot(hits: &mut u32) -> usize {
 }
 
 #[inline(always)]
-fn wait(bvh: &WideBvh, stack: &mut Stack, pending: Pending) {
+fn wait(bvh: &WideBvh, stack: &mut ArrayVec<Pending, MOST_PENDING>, pending: Pending) {
     if !pending.child.is_leaf() {
         prefetch(&bvh.nodes[pending.child.node_index()]);
     }
@@ -168,7 +172,7 @@ fn wait(bvh: &WideBvh, stack: &mut Stack, pending: Pending) {
 /// Puts the last child among those from `bottom` on, the one that the ray enters first on top; without order where any
 /// hit will do.
 #[inline(always)]
-fn sort_last<Q: Query>(stack: &mut Stack, bottom: usize) {
+fn sort_last<Q: Query>(stack: &mut ArrayVec<Pending, MOST_PENDING>, bottom: usize) {
     if Q::FIRST_HIT_ENDS {
         return;
     }
