@@ -75,6 +75,8 @@ pub(super) struct Plain<S: Simd> {
     origin: [S::F32x8; 3],
     inverse: [S::F32x8; 3],
     slack: [S::F32x8; 3],
+    /// All lanes, for an axis of which the direction has nothing.
+    stays: [u32; 3],
 }
 
 impl<S: Simd> Plain<S> {
@@ -86,6 +88,7 @@ impl<S: Simd> Plain<S> {
             origin: splat(simd, slabs.origin),
             inverse: splat(simd, slabs.inverse),
             slack: splat(simd, slabs.slack),
+            stays: slabs.inverse.map(|inverse| if inverse.is_infinite() { u32::MAX } else { 0 }),
         }
     }
 
@@ -104,14 +107,18 @@ impl<S: Simd> BoxTest<S> for Plain<S> {
     #[inline(always)]
     fn test(&self, simd: S, node: &WideNode, t_min: S::F32x8, t_max: f32) -> (u32, S::F32x8) {
         let (mut enter, mut leave) = (t_min, simd.splat(t_max));
+        let mut edge_on = 0;
         for axis in 0..3 {
             let side = self.near_side[axis] & 1;
             let near = simd.sub(self.distance(simd, node, axis, side), self.slack[axis]);
             let far = simd.add(self.distance(simd, node, axis, side ^ 1), self.slack[axis]);
             enter = simd.max(near, enter);
             leave = simd.min(far, leave);
+            // Two times 0 * inf: a box without thickness, and the ray inside its plane. It sees what is there edge-on,
+            // and hits none of it.
+            edge_on |= self.stays[axis] & !(simd.less_or_equal(near, near) | simd.less_or_equal(far, far));
         }
-        (simd.less_or_equal(enter, leave), enter)
+        (simd.less_or_equal(enter, leave) & !edge_on, enter)
     }
 }
 

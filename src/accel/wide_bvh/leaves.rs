@@ -59,10 +59,11 @@ impl Leaves {
     }
 
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.words.as_slice()) + size_of_val(self.ids.starts.as_slice())
+        size_of_val(self.words.as_slice()) + self.ids.bytes()
     }
 
     /// The hit with its triangle's own ids.
+    #[inline(always)]
     pub(super) fn resolve(&self, mut hit: ClosestHit) -> ClosestHit {
         (hit.triangle.geometry_id, hit.triangle.primitive_id) = self.ids.separate(hit.triangle.primitive_id);
         hit
@@ -110,8 +111,12 @@ impl<'a> Leaf<'a> {
 
 /// Geometry and primitive as one number, in the order of `(geometry_id, primitive_id)`.
 pub(super) struct Ids {
-    /// Where each geometry's numbers begin.
+    /// Where each geometry's numbers begin; at the end where the last one's stop.
     starts: Vec<u32>,
+    /// For each bucket of `1 << bucket_bits` numbers the geometry that has its first one, and the same for where the
+    /// last bucket ends: as many buckets as geometries make the search among them short.
+    buckets: Vec<u32>,
+    bucket_bits: u32,
 }
 
 impl Ids {
@@ -124,16 +129,39 @@ impl Ids {
             starts.resize(triangle.geometry_id as usize + 1, next);
             next = starts[triangle.geometry_id as usize] + triangle.primitive_id + 1;
         }
-        Self { starts }
+        starts.push(next);
+        let geometry_count = starts.len() - 1;
+        let bucket_bits = (next / geometry_count as u32).checked_ilog2().unwrap_or(0);
+        let bucket_count = (next as usize).div_ceil(1 << bucket_bits);
+        let mut ids = Self { starts, buckets: Vec::new(), bucket_bits };
+        ids.buckets = (0..=bucket_count).map(|bucket| ids.geometry_of(bucket << bucket_bits, 0, geometry_count)).collect();
+        ids
     }
 
     fn joined(&self, triangle: &Triangle) -> u32 {
         self.starts[triangle.geometry_id as usize] + triangle.primitive_id
     }
 
+    #[inline(always)]
     fn separate(&self, id: u32) -> (u32, u32) {
-        let geometry = self.starts.partition_point(|&start| start <= id) - 1;
-        (geometry as u32, id - self.starts[geometry])
+        let bucket = (id >> self.bucket_bits) as usize;
+        let (first, last) = (self.buckets[bucket], self.buckets[bucket + 1]);
+        let geometry = if first == last {
+            first
+        } else {
+            self.geometry_of(id as usize, first as usize, last as usize + 1)
+        };
+        (geometry, id - self.starts[geometry as usize])
+    }
+
+    /// The geometry that has a number, among those from `first` to before `end`; the last of them for numbers beyond.
+    fn geometry_of(&self, id: usize, first: usize, end: usize) -> u32 {
+        let starts_before = self.starts[first..end].partition_point(|&start| start as usize <= id);
+        (first + starts_before - 1) as u32
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self.starts.as_slice()) + size_of_val(self.buckets.as_slice())
     }
 }
 
@@ -141,4 +169,41 @@ impl Ids {
 #[inline(always)]
 fn array<const N: usize>(values: &[f32], at: usize) -> &[f32; N] {
     values[at..][..N].try_into().expect("the length is that of the array")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle(geometry_id: u32, primitive_id: u32) -> Triangle {
+        Triangle { axes: [[0.0; 3]; 3], geometry_id, primitive_id }
+    }
+
+    #[test]
+    fn joined_ids_separate_again_and_keep_their_order() {
+        // Geometries of very different sizes, some without a triangle, some with gaps.
+        let counts = [3, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1000, 0, 2, 5000, 1, 0, 7];
+        let triangles: Vec<_> = (0..)
+            .zip(counts)
+            .flat_map(|(geometry, count)| (0..count).filter(|primitive| primitive % 7 != 5).map(move |p| (geometry, p)))
+            .map(|(geometry, primitive)| triangle(geometry, primitive))
+            .collect();
+        let ids = Ids::new(&triangles);
+        let mut last = None;
+        for triangle in &triangles {
+            let id = ids.joined(triangle);
+            assert_eq!(ids.separate(id), (triangle.geometry_id, triangle.primitive_id));
+            assert!(last < Some(id));
+            last = Some(id);
+        }
+    }
+
+    #[test]
+    fn a_single_triangle_of_a_late_geometry_has_ids() {
+        for primitive in [0, 5, u32::MAX - 1] {
+            let lone = triangle(9, primitive);
+            let ids = Ids::new(&[lone]);
+            assert_eq!(ids.separate(ids.joined(&lone)), (9, primitive));
+        }
+    }
 }
