@@ -234,7 +234,11 @@ impl ExactTest<'_> {
         best: &mut Best,
     ) -> bool {
         let interval = Interval { t_min: self.interval.t_min, t_max: best.high };
-        let hit = if is_certain {
+        let hit = if is_certain && !Q::FIRST_HIT_ENDS {
+            self.certain_hit::<P>(candidate, interval)
+        } else if is_certain {
+            // In a frame of its own: measured, any-hit rays lose a seventh where they leave from a surface and this is
+            // inlined, and closest-hit rays lose as much where it is not.
             simd.vectorize(Locate::<P> { exact: self, place: candidate, interval, precision: PhantomData })
         } else {
             self.hit::<P>(candidate, interval)
