@@ -20,7 +20,7 @@ fn variants() -> Vec<BuildOptions> {
     let of = |structure, quality, isa| BuildOptions { structure, quality, isa, ..BuildOptions::default() };
     let qualities = [Quality::Low, Quality::Medium];
     let binary = qualities.map(|quality| of(Structure::Bvh, quality, Isa::Auto));
-    let wide = [Isa::Scalar, Isa::Sse42, Isa::Avx2]
+    let wide = [Isa::Scalar, Isa::Sse42, Isa::Avx2, Isa::Avx512]
         .into_iter()
         .flat_map(|isa| qualities.map(|quality| of(Structure::WideBvh, quality, isa)));
     binary.into_iter().chain(wide).collect()

@@ -34,6 +34,10 @@ impl Accel for BruteForce {
         ray: impl Into<Ray>,
         then: impl FnOnce(Option<ClosestHit>) -> R,
     ) -> R {
+        // An empty scene answers before the ray is looked at.
+        if self.triangles.is_empty() {
+            return then(None);
+        }
         let Some(ray) = Ray::valid(ray) else { return then(None) };
         let mut best = ClosestHit::none(&ray);
         test_triangles::<Q, P>(&self.triangles, &TriangleRay::new(&ray), ray.t_min, &mut best);

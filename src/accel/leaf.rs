@@ -69,8 +69,13 @@ pub(crate) fn test_triangles<Q: Query, P: PrecisionMode>(
     t_min: f32,
     best: &mut ClosestHit,
 ) -> bool {
-    triangles.iter().any(|triangle| {
-        let hit = ray.hit::<P>(triangle, Interval { t_min, t_max: best.t });
-        hit.is_some_and(|hit| best.improve(&hit, triangle)) && Q::FIRST_HIT_ENDS
-    })
+    for triangle in triangles {
+        if let Some(hit) = ray.hit::<P>(triangle, Interval { t_min, t_max: best.t })
+            && best.improve(&hit, triangle)
+            && Q::FIRST_HIT_ENDS
+        {
+            return true;
+        }
+    }
+    false
 }

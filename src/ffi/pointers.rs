@@ -4,20 +4,32 @@ use std::mem::MaybeUninit;
 
 use super::status::Failure;
 
+/// The name of an argument that is null. Not a [`Failure`] yet: that would be made, and a query's registers saved for
+/// it, in the midst of the checks.
+pub(super) struct Null(&'static str);
+
+impl From<Null> for Failure {
+    #[cold]
+    #[inline(never)]
+    fn from(Null(name): Null) -> Self {
+        Self::invalid(format!("{name} is null"))
+    }
+}
+
 /// # Safety
 /// `pointer` is null or points to a value that nothing writes while the reference lives.
-pub(super) unsafe fn required<'a, T>(pointer: *const T, name: &str) -> Result<&'a T, Failure> {
+pub(super) unsafe fn required<'a, T>(pointer: *const T, name: &'static str) -> Result<&'a T, Null> {
     // SAFETY: the caller's promise.
-    unsafe { pointer.as_ref() }.ok_or_else(|| null(name))
+    unsafe { pointer.as_ref() }.ok_or(Null(name))
 }
 
 /// A place for an output, which may hold anything yet.
 ///
 /// # Safety
 /// `pointer` is null or points to memory for a `T` that nobody else uses while the reference lives.
-pub(super) unsafe fn output<'a, T>(pointer: *mut T, name: &str) -> Result<&'a mut MaybeUninit<T>, Failure> {
+pub(super) unsafe fn output<'a, T>(pointer: *mut T, name: &'static str) -> Result<&'a mut MaybeUninit<T>, Null> {
     // SAFETY: the caller's promise; MaybeUninit<T> has T's layout and no invariant.
-    unsafe { pointer.cast::<MaybeUninit<T>>().as_mut() }.ok_or_else(|| null(name))
+    unsafe { pointer.cast::<MaybeUninit<T>>().as_mut() }.ok_or(Null(name))
 }
 
 /// `count` values; a null pointer is fine for none.
@@ -67,8 +79,4 @@ fn check_alignment<T>(pointer: *const T, name: &str) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::invalid(format!("{name} is at {pointer:p}, not a multiple of {}", align_of::<T>())))
-}
-
-fn null(name: &str) -> Failure {
-    Failure::invalid(format!("{name} is null"))
 }

@@ -1,9 +1,11 @@
 //! Queries: one ray, or many.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use super::options::GnomonQueryOptions;
-use super::pointers::{output, output_slice, required, slice};
+use super::pointers::{Null, output, output_slice, required, slice};
 use super::scene::GnomonScene;
-use super::status::{Failure, GnomonStatus, caught, guard, report};
+use super::status::{Failure, GnomonStatus, guard, panicked, report};
 use super::types::{GnomonHit, GnomonRay};
 
 /// The closest hit of a ray: true if there is one, and `hit_out` gets it; false for a miss, and `hit_out` says so.
@@ -115,9 +117,18 @@ pub unsafe extern "C-unwind" fn gnomon_occluded_n(
 
 /// A query's answer; false after a failure, which is kept for `gnomon_last_error`.
 #[inline(always)]
-fn answer(query: impl FnOnce() -> Result<bool, Failure>) -> bool {
-    caught(query).unwrap_or_else(|failure| {
-        report(failure);
-        false
-    })
+fn answer(query: impl FnOnce() -> Result<bool, Null>) -> bool {
+    match catch_unwind(AssertUnwindSafe(query)) {
+        Ok(Ok(answer)) => answer,
+        Ok(Err(null)) => no_answer(|| null.into()),
+        Err(panic) => no_answer(move || panicked(&*panic)),
+    }
+}
+
+/// Out of line, so that a query that fails in nothing saves no registers for this.
+#[cold]
+#[inline(never)]
+fn no_answer(failure: impl FnOnce() -> Failure) -> bool {
+    report(failure());
+    false
 }

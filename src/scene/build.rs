@@ -41,7 +41,7 @@ fn build_with(
     let accel = accel::build(structure, options.quality, triangles, bounds, context)?;
     let shape = accel.shape();
     // Only the wide BVH has kernels beyond the scalar one.
-    let isa = if structure == Structure::WideBvh { options.isa.resolve() } else { Isa::Scalar };
+    let isa = if structure == Structure::WideBvh { options.isa } else { Isa::Scalar }.resolve();
     let stats = Stats {
         triangle_count: (added_count - skipped_count) as u64,
         node_count: shape.node_count as u64,
@@ -51,7 +51,7 @@ fn build_with(
         depth: shape.depth,
         structure,
         precision: options.precision,
-        isa,
+        isa: isa.into(),
         bytes: (shape.node_bytes + shape.leaf_bytes + size_of::<Scene>()) as u64,
         node_bytes: shape.node_bytes as u64,
         leaf_bytes: shape.leaf_bytes as u64,

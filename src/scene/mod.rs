@@ -16,13 +16,13 @@ pub use options::{BuildOptions, InvalidTriangles};
 
 use crate::accel::{AnyAccel, Precision, Stats};
 use crate::geometry::Aabb;
-use crate::simd::Isa;
+use crate::simd::DetectedIsa;
 
 /// An immutable scene; any number of threads may query it.
 pub struct Scene {
     accel: AnyAccel,
     precision: Precision,
-    isa: Isa,
+    isa: DetectedIsa,
     bounds: Aabb,
     stats: Stats,
 }

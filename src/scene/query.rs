@@ -3,9 +3,7 @@
 use super::Scene;
 use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Precision, Vectorized, WideBvh};
 use crate::geometry::{Accurate, Fast, Hit, INVALID_ID, PrecisionMode, Ray};
-#[cfg(target_arch = "x86_64")]
-use crate::simd::{Avx2, Sse42};
-use crate::simd::{Isa, Scalar};
+use crate::simd::DetectedIsa;
 
 /// Work that runs on whatever structure and precision a scene has.
 pub(super) trait Kernel {
@@ -36,24 +34,29 @@ impl Scene {
     #[inline(always)]
     pub(super) fn dispatch<K: Kernel>(&self, kernel: K) -> K::Output {
         match &self.accel {
-            AnyAccel::BruteForce(brute_force) => self.dispatch_precision(kernel, brute_force),
-            AnyAccel::Bvh(bvh) => self.dispatch_precision(kernel, bvh),
+            AnyAccel::BruteForce(brute_force) => self.dispatch_apart(kernel, brute_force),
+            AnyAccel::Bvh(bvh) => self.dispatch_apart(kernel, bvh),
             AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
         }
     }
 
     #[inline(always)]
     fn dispatch_isa<K: Kernel>(&self, kernel: K, bvh: &WideBvh) -> K::Output {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if let Some(simd) = Avx2::detect().filter(|_| self.isa == Isa::Avx2) {
-                return self.dispatch_precision(kernel, &Vectorized { bvh, simd });
-            }
-            if let Some(simd) = Sse42::detect().filter(|_| self.isa == Isa::Sse42) {
-                return self.dispatch_precision(kernel, &Vectorized { bvh, simd });
-            }
+        match self.isa {
+            DetectedIsa::Scalar(simd) => self.dispatch_precision(kernel, &Vectorized { bvh, simd }),
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Sse42(simd) => self.dispatch_precision(kernel, &Vectorized { bvh, simd }),
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Avx2(simd) => self.dispatch_precision(kernel, &Vectorized { bvh, simd }),
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Avx512(simd) => self.dispatch_precision(kernel, &Vectorized { bvh, simd }),
         }
-        self.dispatch_precision(kernel, &Vectorized { bvh, simd: Scalar })
+    }
+
+    /// In a frame of its own, as the vectorised kernels have it, so that no other kernel pays for its stack.
+    #[inline(never)]
+    fn dispatch_apart<K: Kernel, A: Accel + Sync>(&self, kernel: K, accel: &A) -> K::Output {
+        self.dispatch_precision(kernel, accel)
     }
 
     #[inline(always)]

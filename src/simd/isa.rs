@@ -1,5 +1,9 @@
 //! Which instruction set to use.
 
+use super::Scalar;
+#[cfg(target_arch = "x86_64")]
+use super::{Avx2, Avx512, Sse42};
+
 /// An instruction set: as a cap on what a scene's queries may use, or as what they do use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Isa {
@@ -16,18 +20,50 @@ pub enum Isa {
     Avx512,
 }
 
+/// An instruction set that the CPU has, with the proof.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum DetectedIsa {
+    Scalar(Scalar),
+    #[cfg(target_arch = "x86_64")]
+    Sse42(Sse42),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Avx512),
+}
+
 impl Isa {
-    /// The best that is built and that the CPU has, no better than this cap. There are no kernels for AVX-512 yet.
-    pub(crate) fn resolve(self) -> Self {
+    /// The best that the CPU has, no better than this cap.
+    pub(crate) fn resolve(self) -> DetectedIsa {
         #[cfg(target_arch = "x86_64")]
         {
-            if matches!(self, Self::Auto | Self::Avx512 | Self::Avx2) && super::Avx2::detect().is_some() {
-                return Self::Avx2;
-            }
-            if self != Self::Scalar && super::Sse42::detect().is_some() {
-                return Self::Sse42;
+            let sse42 = || Sse42::detect().map(DetectedIsa::Sse42);
+            let avx2 = || Avx2::detect().map(DetectedIsa::Avx2).or_else(sse42);
+            let avx512 = || Avx512::detect().map(DetectedIsa::Avx512).or_else(avx2);
+            let best = match self {
+                Self::Auto | Self::Avx512 => avx512(),
+                Self::Avx2 => avx2(),
+                Self::Sse42 => sse42(),
+                Self::Scalar => None,
+            };
+            if let Some(best) = best {
+                return best;
             }
         }
-        Self::Scalar
+        DetectedIsa::Scalar(Scalar)
+    }
+}
+
+impl From<DetectedIsa> for Isa {
+    fn from(detected: DetectedIsa) -> Self {
+        match detected {
+            DetectedIsa::Scalar(_) => Self::Scalar,
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Sse42(_) => Self::Sse42,
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Avx2(_) => Self::Avx2,
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Avx512(_) => Self::Avx512,
+        }
     }
 }

@@ -8,6 +8,8 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod isa;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
@@ -17,6 +19,9 @@ mod tests;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::Avx2;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx512::Avx512;
+pub(crate) use isa::DetectedIsa;
 pub use isa::Isa;
 pub(crate) use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]

@@ -6,13 +6,20 @@ use super::{LANES, Simd, SimdKernel};
 pub(crate) struct Scalar;
 
 #[inline(always)]
-fn lanewise(a: [f32; LANES], b: [f32; LANES], op: impl Fn(f32, f32) -> f32) -> [f32; LANES] {
-    std::array::from_fn(|lane| op(a[lane], b[lane]))
+fn lanewise(mut a: [f32; LANES], b: [f32; LANES], op: impl Fn(f32, f32) -> f32) -> [f32; LANES] {
+    for lane in 0..LANES {
+        a[lane] = op(a[lane], b[lane]);
+    }
+    a
 }
 
 #[inline(always)]
 fn mask(a: [f32; LANES], b: [f32; LANES], holds: impl Fn(f32, f32) -> bool) -> u32 {
-    (0..LANES).fold(0, |bits, lane| bits | (u32::from(holds(a[lane], b[lane])) << lane))
+    let mut bits = 0;
+    for lane in 0..LANES {
+        bits |= u32::from(holds(a[lane], b[lane])) << lane;
+    }
+    bits
 }
 
 impl Simd for Scalar {
@@ -20,7 +27,12 @@ impl Simd for Scalar {
 
     #[inline(always)]
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
-        kernel.run(self)
+        // A frame as the others have, so that a query that does not take it does not pay for its stack.
+        #[inline(never)]
+        fn frame<K: SimdKernel>(simd: Scalar, kernel: K) -> K::Output {
+            kernel.run(simd)
+        }
+        frame(self, kernel)
     }
 
     #[inline(always)]

@@ -79,12 +79,19 @@ fn every_instruction_set_computes_what_the_scalar_one_does() {
             assert_eq!(results(simd), results(Scalar), "AVX2");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
+        if let Some(simd) = Avx512::detect() {
+            assert_eq!(results(simd), results(Scalar), "AVX-512");
+            assert_eq!(exact_mul_sub(simd), MUL_SUB);
+        }
     }
 }
 
 #[test]
 fn a_cap_is_never_exceeded() {
-    assert_eq!(Isa::Scalar.resolve(), Isa::Scalar);
-    assert!(matches!(Isa::Sse42.resolve(), Isa::Scalar | Isa::Sse42));
-    assert!(matches!(Isa::Avx2.resolve(), Isa::Scalar | Isa::Sse42 | Isa::Avx2));
+    let resolved = |cap: Isa| Isa::from(cap.resolve());
+    assert_eq!(resolved(Isa::Scalar), Isa::Scalar);
+    assert!(matches!(resolved(Isa::Sse42), Isa::Scalar | Isa::Sse42));
+    assert!(matches!(resolved(Isa::Avx2), Isa::Scalar | Isa::Sse42 | Isa::Avx2));
+    assert_eq!(resolved(Isa::Avx512), resolved(Isa::Auto));
+    assert_ne!(resolved(Isa::Auto), Isa::Auto);
 }

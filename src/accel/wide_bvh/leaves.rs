@@ -1,5 +1,6 @@
 //! The triangles of all leaves, each leaf by coordinate: what one load brings is one coordinate of all its triangles.
 
+use super::node::Child;
 use crate::accel::{BuildContext, BuildFailure, ClosestHit};
 use crate::geometry::Triangle;
 use crate::simd::LANES;
@@ -9,6 +10,9 @@ const WORDS: usize = 10;
 /// What a leaf reads at the most, its rows loaded as eight: so the compiler sees that every row is inside. The axis
 /// counts as 2 bits.
 const WINDOW: usize = (3 * 3 + 2) * LANES + LANES;
+
+// Counted in words, the place of every leaf that a reference can name fits 32 bits; its bytes are beyond 4 GiB.
+const _: () = assert!(Child::MOST_TRIANGLES <= (u32::MAX as usize - WINDOW) / WORDS);
 
 pub(super) struct Leaves {
     /// A leaf of n triangles from the i-th on has the words from 10 i on: nine rows of n coordinates (x, y, z; first,

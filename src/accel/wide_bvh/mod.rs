@@ -42,10 +42,8 @@ impl WideBvh {
         quality: Quality,
         context: &BuildContext,
     ) -> Result<Self, BuildFailure> {
-        let (count, limit) = (triangles.len(), Child::MOST_TRIANGLES);
-        if count > limit {
-            return Err(BuildFailure::TooManyTriangles { count, limit });
-        }
+        let count = triangles.len();
+        check_count(count)?;
         context.expect(count);
         let ids = leaves::Ids::new(&triangles);
         let binary = match quality {
@@ -71,6 +69,11 @@ impl WideBvh {
     }
 }
 
+fn check_count(count: usize) -> Result<(), BuildFailure> {
+    let limit = Child::MOST_TRIANGLES;
+    if count > limit { Err(BuildFailure::TooManyTriangles { count, limit }) } else { Ok(()) }
+}
+
 /// The hierarchy as an instruction set queries it.
 pub(crate) struct Vectorized<'a, S> {
     pub(crate) bvh: &'a WideBvh,
@@ -85,5 +88,17 @@ impl<S: Simd> Accel for Vectorized<'_, S> {
         then: impl FnOnce(Option<ClosestHit>) -> R,
     ) -> R {
         self.simd.vectorize(traverse::Traversal::<Q, P, _, _>::new(self.bvh, ray, then))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_triangles_than_references_can_name_are_refused_with_both_numbers() {
+        let limit = 1 << 28;
+        assert_eq!(check_count(limit), Ok(()));
+        assert_eq!(check_count(limit + 1), Err(BuildFailure::TooManyTriangles { count: limit + 1, limit }));
     }
 }

@@ -72,3 +72,33 @@ impl WideNode {
         self.children[slot] = child;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leaf_reference_holds_its_first_triangle_and_its_count_at_their_limits() {
+        for first in [0, 1, Child::MOST_TRIANGLES - 1] {
+            for count in 1..=LANES {
+                let child = Child::leaf(first, count);
+                assert!(child.is_leaf());
+                assert_eq!(child.triangles(), (first, count));
+            }
+        }
+    }
+
+    #[test]
+    fn node_reference_holds_its_index_at_its_limits() {
+        for index in [0, 1, Child::MOST_TRIANGLES, (1 << 31) - 1] {
+            let child = Child::node(index);
+            assert!(!child.is_leaf());
+            assert_eq!(child.node_index(), index);
+        }
+    }
+
+    #[test]
+    fn empty_slot_refers_to_triangles_that_are_there() {
+        assert_eq!(WideNode::EMPTY.children, [Child::leaf(0, 1); LANES]);
+    }
+}

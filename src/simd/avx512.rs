@@ -1,0 +1,72 @@
+//! AVX-512 on 256-bit vectors: AVX2, but comparisons give masks, and there are twice as many registers.
+
+use std::arch::x86_64::*;
+
+use super::{Avx2, LANES, Simd, SimdKernel};
+
+/// Proof that the CPU has AVX-512 F, VL, DQ and BW, and AVX2 and FMA as well.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx512(Avx2);
+
+impl Avx512 {
+    pub(crate) fn detect() -> Option<Self> {
+        let avx2 = Avx2::detect()?;
+        let is_there = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512bw");
+        is_there.then_some(Self(avx2))
+    }
+}
+
+/// The operations that are those of AVX2.
+macro_rules! as_avx2 {
+    ($(fn $name:ident($($operand:ident: $type:ty),*) -> $result:ty;)*) => {$(
+        #[inline(always)]
+        fn $name(self, $($operand: $type),*) -> $result {
+            self.0.$name($($operand),*)
+        }
+    )*};
+}
+
+impl Simd for Avx512 {
+    type F32x8 = __m256;
+
+    #[inline(always)]
+    fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
+        #[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
+        #[inline(never)]
+        fn frame<K: SimdKernel>(simd: Avx512, kernel: K) -> K::Output {
+            kernel.run(simd)
+        }
+        // SAFETY: the token proves that the CPU has them all.
+        unsafe { frame(self, kernel) }
+    }
+
+    as_avx2! {
+        fn splat(value: f32) -> __m256;
+        fn load(values: &[f32; LANES]) -> __m256;
+        fn store(a: __m256) -> [f32; LANES];
+        fn add(a: __m256, b: __m256) -> __m256;
+        fn sub(a: __m256, b: __m256) -> __m256;
+        fn mul(a: __m256, b: __m256) -> __m256;
+        fn div(a: __m256, b: __m256) -> __m256;
+        fn abs(a: __m256) -> __m256;
+        fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256;
+        fn mul_sub(a: __m256, b: __m256, c: __m256) -> __m256;
+        fn min(a: __m256, b: __m256) -> __m256;
+        fn max(a: __m256, b: __m256) -> __m256;
+    }
+
+    #[inline(always)]
+    fn less(self, a: __m256, b: __m256) -> u32 {
+        // SAFETY: the token proves that the CPU has AVX-512 F and VL.
+        u32::from(unsafe { _mm256_cmp_ps_mask::<_CMP_LT_OQ>(a, b) })
+    }
+
+    #[inline(always)]
+    fn less_or_equal(self, a: __m256, b: __m256) -> u32 {
+        // SAFETY: the token proves that the CPU has AVX-512 F and VL.
+        u32::from(unsafe { _mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b) })
+    }
+}

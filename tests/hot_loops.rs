@@ -1,0 +1,150 @@
+//! The machine code of the release library's kernels is in one piece, and made of vector instructions.
+//!
+//! What the compiler leaves out of line between a kernel's frame and the operations of `src/simd` gives the right
+//! answers and takes several times as long: nothing but the machine code tells.
+#![cfg(all(target_arch = "x86_64", target_os = "linux"))]
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::process::Command;
+
+use iced_x86::{Decoder, DecoderOptions, FlowControl, Instruction};
+use object::read::archive::ArchiveFile;
+use object::{Object, ObjectSection, ObjectSymbol, RelocationTarget, Symbol};
+
+/// An instruction set as its kernels' symbols name it, and what each kernel has of its vector instructions at the
+/// least: the beginning of the name, without the `v` of AVX, and how many.
+struct Expected {
+    token: &'static str,
+    vector_bytes: usize,
+    instructions: &'static [(&'static str, usize)],
+}
+
+/// A node test takes three of `max` and `min` and six products, fused where there is a fused form beside the plain
+/// one; a leaf test takes twelve products more. Two registers make a vector where one has only four floats.
+const EXPECTED: [Expected; 4] = [
+    Expected { token: "Scalar", vector_bytes: 16, instructions: &[("maxps", 6), ("minps", 6), ("mulps", 36)] },
+    Expected { token: "Sse42", vector_bytes: 16, instructions: &[("maxps", 6), ("minps", 6), ("mulps", 36)] },
+    Expected {
+        token: "Avx2",
+        vector_bytes: 32,
+        instructions: &[("fm", 6), ("maxps", 6), ("minps", 6), ("mulps", 18), ("movmskps", 2)],
+    },
+    Expected {
+        token: "Avx512",
+        vector_bytes: 32,
+        instructions: &[("fm", 6), ("maxps", 6), ("minps", 6), ("mulps", 18), ("cmpps", 2)],
+    },
+];
+
+/// A kernel's frame, in the old and in the new mangling of symbols.
+const FRAME: &str = "9vectorize5frame";
+
+/// What a kernel may call: the part of the triangle test that few triangles reach, and what panics.
+const MAY_BE_CALLED: [&str; 6] =
+    ["6settle", "4core9panicking", "16slice_index_fail", "13expect_failed", "13unwrap_failed", "_Unwind_Resume"];
+
+struct Kernel {
+    symbol: String,
+    instructions: Vec<Instruction>,
+    /// The symbols, or the instruction where the address is computed.
+    called: Vec<String>,
+}
+
+impl Kernel {
+    fn count(&self, name: &str, vector_bytes: usize) -> usize {
+        let is_one = |instruction: &&Instruction| {
+            let mnemonic = format!("{:?}", instruction.mnemonic()).to_lowercase();
+            let mut registers = (0..instruction.op_count()).map(|operand| instruction.op_register(operand));
+            mnemonic.trim_start_matches('v').starts_with(name)
+                && registers.any(|register| register.is_vector_register() && register.size() >= vector_bytes)
+        };
+        self.instructions.iter().filter(is_one).count()
+    }
+}
+
+/// Built as users do.
+fn release_library() -> Vec<u8> {
+    let target_folder = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("it is a folder of the target folder");
+    let status = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--lib", "--locked", "--quiet", "--package", env!("CARGO_PKG_NAME")])
+        .arg("--target-dir")
+        .arg(target_folder)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .status()
+        .expect("cargo runs");
+    assert!(status.success(), "cargo build --release: {status}");
+    // The archive rather than the shared library: it keeps the names of all that is called.
+    std::fs::read(target_folder.join("release/libgnomon.a")).expect("cargo has written it")
+}
+
+fn kernels(archive: &[u8]) -> Vec<Kernel> {
+    let members = ArchiveFile::parse(archive).expect("the library is an archive").members();
+    let objects = members.filter_map(|member| {
+        let bytes = member.expect("the archive is whole").data(archive).expect("the archive is whole");
+        object::File::parse(bytes).ok()
+    });
+    objects
+        .flat_map(|object| {
+            let frames = object.symbols().filter(|symbol| symbol.name().is_ok_and(|name| name.contains(FRAME)));
+            frames.map(|frame| kernel(&object, &frame)).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+fn kernel(object: &object::File, frame: &Symbol) -> Kernel {
+    let section = frame.section_index().and_then(|index| object.section_by_index(index).ok());
+    let section = section.expect("a frame is compiled where it is named");
+    let code = section.data_range(frame.address(), frame.size()).ok().flatten().expect("the section has the frame");
+    let instructions: Vec<_> = Decoder::with_ip(64, code, frame.address(), DecoderOptions::NONE).into_iter().collect();
+    let name_of = |index| {
+        let symbol = object.symbol_by_index(index).ok()?;
+        // A function of the same object may go by its section, which bears its name.
+        let section = || object.section_by_index(symbol.section_index()?).ok()?.name().ok();
+        symbol.name().ok().filter(|name| !name.is_empty()).or_else(section)
+    };
+    let referenced: HashMap<u64, &str> = section
+        .relocations()
+        .filter_map(|(address, relocation)| match relocation.target() {
+            RelocationTarget::Symbol(index) => Some((address, name_of(index)?)),
+            _ => None,
+        })
+        .collect();
+    let is_call = |instruction: &&Instruction| {
+        matches!(instruction.flow_control(), FlowControl::Call | FlowControl::IndirectCall)
+    };
+    let callee = |call: &Instruction| match (call.ip()..call.next_ip()).find_map(|byte| referenced.get(&byte)) {
+        Some(&symbol) => symbol.to_owned(),
+        None => format!("{:?}", call.code()),
+    };
+    let called = instructions.iter().filter(is_call).map(callee).collect();
+    Kernel { symbol: frame.name().expect("it was found by its name").to_owned(), instructions, called }
+}
+
+#[test]
+fn kernels_call_nothing_but_cold_functions() {
+    for Kernel { symbol, called, .. } in kernels(&release_library()) {
+        for callee in called {
+            assert!(
+                MAY_BE_CALLED.iter().any(|name| callee.contains(name)),
+                "{symbol} calls {callee}: it, or what calls it, wants #[inline(always)], or a loop in place of a closure"
+            );
+        }
+    }
+}
+
+#[test]
+fn kernels_are_made_of_whole_vectors() {
+    let kernels = kernels(&release_library());
+    for Expected { token, vector_bytes, instructions } in EXPECTED {
+        let of_token: Vec<_> = kernels.iter().filter(|kernel| kernel.symbol.contains(token)).collect();
+        assert!(!of_token.is_empty(), "no symbol has both {token} and {FRAME}");
+        for kernel in of_token {
+            for (name, least) in instructions {
+                let count = kernel.count(name, vector_bytes);
+                let symbol = &kernel.symbol;
+                assert!(count >= *least, "{symbol} has {count} of {name} on {vector_bytes} bytes, less than {least}");
+            }
+        }
+    }
+}
