@@ -3,6 +3,7 @@
 //! Only the hit that wins is evaluated: before, `f32` arithmetic bounds each `t` from both sides, and the bounds mostly
 //! tell which hit is nearer. Where they do not, the scalar test of `geometry/triangle_hit.rs` decides.
 
+use std::hint::black_box;
 use std::marker::PhantomData;
 
 use super::leaves::Leaf;
@@ -17,11 +18,7 @@ use crate::simd::{LANES, Simd, SimdKernel};
 /// are.
 pub(super) struct LeafTest<'a, S: Simd> {
     exact: ExactTest<'a>,
-    origin: [S::F32x8; 3],
-    shear_x: S::F32x8,
-    shear_y: S::F32x8,
-    /// `1 / dz`, of the direction's largest component.
-    per_z: S::F32x8,
+    isa: PhantomData<S>,
 }
 
 /// What the scalar test needs.
@@ -78,17 +75,8 @@ impl Best {
 
 impl<'a, S: Simd> LeafTest<'a, S> {
     #[inline(always)]
-    pub(super) fn new(simd: S, bvh: &'a WideBvh, ray: &'a TriangleRay, interval: Interval) -> Self {
-        let [kx, ky, kz] = ray.axes;
-        let origin =
-            [simd.splat(ray.origin[kx & 3]), simd.splat(ray.origin[ky & 3]), simd.splat(ray.origin[kz & 3])];
-        Self {
-            exact: ExactTest { bvh, ray, interval },
-            origin,
-            shear_x: simd.splat(ray.per_z[kx & 3]),
-            shear_y: simd.splat(ray.per_z[ky & 3]),
-            per_z: simd.splat(ray.per_z[3]),
-        }
+    pub(super) fn new(_simd: S, bvh: &'a WideBvh, ray: &'a TriangleRay, interval: Interval) -> Self {
+        Self { exact: ExactTest { bvh, ray, interval }, isa: PhantomData }
     }
 
     /// Keeps the best hit. True ends the query.
@@ -143,10 +131,14 @@ impl<'a, S: Simd> LeafTest<'a, S> {
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure.
     #[inline(always)]
     fn candidates(&self, simd: S, leaf: &Leaf<'_>) -> Option<Candidates> {
-        let [kx, ky, kz] = self.exact.ray.axes;
-        let z = from_origin(simd, leaf, kz, self.origin[2]);
-        let x = shear(simd, from_origin(simd, leaf, kx, self.origin[0]), self.shear_x, z);
-        let y = shear(simd, from_origin(simd, leaf, ky, self.origin[1]), self.shear_y, z);
+        // Else the compiler would prepare a register for each of these before the first leaf, only to spill it.
+        let ray = black_box(self.exact.ray);
+        let [kx, ky, kz] = ray.axes;
+        let z = from_origin(simd, leaf, kz, simd.splat(ray.origin[kz & 3]));
+        let x = from_origin(simd, leaf, kx, simd.splat(ray.origin[kx & 3]));
+        let y = from_origin(simd, leaf, ky, simd.splat(ray.origin[ky & 3]));
+        let x = shear(simd, x, simd.splat(ray.per_z[kx & 3]), z);
+        let y = shear(simd, y, simd.splat(ray.per_z[ky & 3]), z);
         let a = edge(simd, x[2], y[1], y[2], x[1]);
         let b = edge(simd, x[0], y[2], y[0], x[2]);
         let c = edge(simd, x[1], y[0], y[1], x[0]);
@@ -177,8 +169,9 @@ impl<'a, S: Simd> LeafTest<'a, S> {
         // An infinite sum makes a NaN.
         let rounding = simd.mul_add(sum, zero, simd.mul(reach_z, u(32.0)));
         let z_error = simd.mul_add(simd.sub(far, near), simd.min(share, simd.splat(1.0)), rounding);
-        let t = simd.mul(simd.mul(weighted, per_sum), self.per_z);
-        let t_error = simd.mul(z_error, simd.abs(self.per_z));
+        let per_z = simd.splat(ray.per_z[3]);
+        let t = simd.mul(simd.mul(weighted, per_sum), per_z);
+        let t_error = simd.mul(z_error, simd.abs(per_z));
         let (low, high) = (simd.sub(t, t_error), simd.add(t, t_error));
         let sure = simd.less(zero, least) | simd.less(most, zero);
         Some(Candidates { lanes, sure, low: simd.store(low), high: simd.store(high) })
