@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
+use glam::{DVec4, Vec4Swizzles};
+
 use super::Triangle;
 use super::triangle_hit::{Corners, TriangleHit, TriangleRay, edge_functions, signs};
 use crate::math::DoubleDouble;
@@ -67,27 +69,31 @@ impl Evaluation {
         let [kx, ky, kz] = ray.axes;
         let wide = |values: &[f32; 4], axis: usize| f64::from(values[axis & 3]);
         let (dx, dy, dz) = (wide(&ray.direction, kx), wide(&ray.direction, ky), wide(&ray.direction, kz));
+        // A lane a vertex; the fourth repeats the first one.
         let ax = from_origin(&corners[0], wide(&ray.origin, kx));
         let ay = from_origin(&corners[1], wide(&ray.origin, ky));
         let az = from_origin(&corners[2], wide(&ray.origin, kz));
-        let x = [ax[0] * dz - dx * az[0], ax[1] * dz - dx * az[1], ax[2] * dz - dx * az[2]];
-        let y = [ay[0] * dz - dy * az[0], ay[1] * dz - dy * az[1], ay[2] * dz - dy * az[2]];
-        let [a, b, c] = edge_functions(&x, &y);
+        let x = ax * dz - az * dx;
+        let y = ay * dz - az * dy;
+        let weights = x.zxyz() * y.yzxy() - y.zxyz() * x.yzxy();
 
-        let depth = greater(greater(az[0].abs(), az[1].abs()), az[2].abs());
-        let size = (x[0].abs() + y[0].abs()) + (x[1].abs() + y[1].abs()) + (x[2].abs() + y[2].abs());
+        let size = x.abs() + y.abs();
+        let size = size.x + size.y + size.z;
+        let depth = az.abs();
+        let depth = greater(greater(depth.x, depth.y), depth.z);
         let reach = 16.0 * E * (size + depth * dz.abs());
         let bound = reach * (size + reach);
-        let (least, most) = (-greater(greater(-a, -b), -c), greater(greater(a, b), c));
-        let sum = a + b + c;
-        if !((least > bound) | (most < -bound)) || 3.0 * bound > RELATIVE_ERROR * sum.abs() {
+        let sum = weights.x + weights.y + weights.z;
+        let is_inside = weights.cmpgt(DVec4::splat(bound)).all() | weights.cmplt(DVec4::splat(-bound)).all();
+        if !is_inside || 3.0 * bound > RELATIVE_ERROR * sum.abs() {
             return None;
         }
-        let weighted = a * az[0] + b * az[1] + c * az[2];
+        let weighted = weights * az;
+        let weighted = weighted.x + weighted.y + weighted.z;
         let inverse = 1.0 / (sum * dz);
         let t = weighted * inverse;
         let per_sum = dz * inverse;
-        let hit = TriangleHit { t: t as f32, u: (b * per_sum) as f32, v: (c * per_sum) as f32 };
+        let hit = TriangleHit { t: t as f32, u: (weights.y * per_sum) as f32, v: (weights.z * per_sum) as f32 };
         let t_bound = (6.0 * bound + 5.0 * E * sum.abs()) * depth;
         if t_bound > RELATIVE_ERROR * weighted.abs() {
             return Some(Self::Near { hit, t, t_error: 2.0 * t_bound * inverse.abs(), t_per_volume: -dz / sum });
@@ -165,8 +171,8 @@ impl Evaluation {
 }
 
 #[inline(always)]
-fn from_origin([a, b, c]: &[f32; 3], origin: f64) -> [f64; 3] {
-    [f64::from(*a) - origin, f64::from(*b) - origin, f64::from(*c) - origin]
+fn from_origin([a, b, c]: &[f32; 3], origin: f64) -> DVec4 {
+    DVec4::new(f64::from(*a), f64::from(*b), f64::from(*c), f64::from(*a)) - origin
 }
 
 /// Without `f64::max`'s care for NaN.
