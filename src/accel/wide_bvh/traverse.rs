@@ -163,7 +163,9 @@ fn next_slot(hits: &mut u32) -> usize {
 
 #[inline(always)]
 fn wait(bvh: &WideBvh, stack: &mut ArrayVec<Pending, MOST_PENDING>, pending: Pending) {
-    if !pending.child.is_leaf() {
+    if pending.child.is_leaf() {
+        bvh.leaves.prefetch(pending.child.triangles());
+    } else {
         prefetch(&bvh.nodes[pending.child.node_index()]);
     }
     stack.push(pending);
