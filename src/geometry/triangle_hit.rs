@@ -105,12 +105,7 @@ impl TriangleRay {
         let kz = (magnitude.cmpge(Vec4::splat(largest)).bitmask().trailing_zeros() & 3) as usize;
         let (kx, ky) = (usize::from(NEXT[kz]), usize::from(AFTER_NEXT[kz]));
         let per_z = direction / Vec4::splat(direction.to_array()[kz]);
-        Self {
-            origin: origin.to_array(),
-            direction: direction.to_array(),
-            axes: [kx, ky, kz],
-            per_z: per_z.to_array(),
-        }
+        Self { origin: origin.to_array(), direction: direction.to_array(), axes: [kx, ky, kz], per_z: per_z.to_array() }
     }
 
     /// The closed triangle against the closed interval of the line.

@@ -41,7 +41,6 @@ pub(crate) trait SimdKernel {
 pub(crate) trait Simd: Copy + Send + Sync {
     type F32x8: Copy;
 
-
     /// Runs a kernel where the compiler may use the instruction set.
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output;
 

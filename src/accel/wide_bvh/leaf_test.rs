@@ -6,9 +6,9 @@
 use std::hint::black_box;
 use std::marker::PhantomData;
 
+use super::WideBvh;
 use super::leaves::Leaf;
 use super::node::Child;
-use super::WideBvh;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
 use crate::math::UNIT_ROUNDOFF;
@@ -157,11 +157,8 @@ impl<'a, S: Simd> LeafTest<'a, S> {
         let broad = simd.add(reach_x, reach_y);
         let reach = simd.add(broad, reach_z);
         let u = |count: f32| simd.splat(count * UNIT_ROUNDOFF);
-        let weights_error = simd.mul_add(
-            simd.mul(reach, u(40.0)),
-            simd.mul_add(reach, u(6.0), broad),
-            simd.splat(f32::MIN_POSITIVE),
-        );
+        let weights_error =
+            simd.mul_add(simd.mul(reach, u(40.0)), simd.mul_add(reach, u(6.0), broad), simd.splat(f32::MIN_POSITIVE));
         let sum = simd.add(a, simd.add(b, c));
         let per_sum = simd.div(simd.splat(1.0), sum);
         let share = simd.mul(simd.add(weights_error, weights_error), simd.abs(per_sum));

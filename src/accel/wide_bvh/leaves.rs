@@ -146,7 +146,8 @@ impl Ids {
         let bucket_bits = (next / geometry_count as u32).checked_ilog2().unwrap_or(0);
         let bucket_count = (next as usize).div_ceil(1 << bucket_bits);
         let mut ids = Self { starts, buckets: Vec::new(), bucket_bits };
-        ids.buckets = (0..=bucket_count).map(|bucket| ids.geometry_of(bucket << bucket_bits, 0, geometry_count)).collect();
+        ids.buckets =
+            (0..=bucket_count).map(|bucket| ids.geometry_of(bucket << bucket_bits, 0, geometry_count)).collect();
         ids
     }
 
@@ -158,11 +159,8 @@ impl Ids {
     fn separate(&self, id: u32) -> (u32, u32) {
         let bucket = (id >> self.bucket_bits) as usize;
         let (first, last) = (self.buckets[bucket], self.buckets[bucket + 1]);
-        let geometry = if first == last {
-            first
-        } else {
-            self.geometry_of(id as usize, first as usize, last as usize + 1)
-        };
+        let geometry =
+            if first == last { first } else { self.geometry_of(id as usize, first as usize, last as usize + 1) };
         (geometry, id - self.starts[geometry as usize])
     }
 

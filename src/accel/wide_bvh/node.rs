@@ -59,10 +59,8 @@ pub(super) struct WideNode {
 const _: () = assert!(size_of::<WideNode>() == 256);
 
 impl WideNode {
-    pub(super) const EMPTY: Self = Self {
-        planes: [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3],
-        children: [Child::NONE; LANES],
-    };
+    pub(super) const EMPTY: Self =
+        Self { planes: [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3], children: [Child::NONE; LANES] };
 
     pub(super) fn set(&mut self, slot: usize, planes: &[[f32; 2]; 3], child: Child) {
         for (axis, [lower, upper]) in planes.iter().enumerate() {
