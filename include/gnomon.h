@@ -91,13 +91,13 @@
 // and smallest here. At most 2^28 triangles.
 #define GNOMON_STRUCTURE_WIDE_BVH 7u
 
-// Fastest build. BVH: split at the median of the longest axis.
+// Fastest build. BVH: split at the median of the longest axis. WIDE_BVH: 8 bins and larger leaves.
 #define GNOMON_QUALITY_LOW 0u
 
-// Good for both. BVH: binned surface area heuristic (Wald 2007).
+// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007).
 #define GNOMON_QUALITY_MEDIUM 1u
 
-// Best queries. Not built yet.
+// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
 #define GNOMON_QUALITY_HIGH 2u
 
 // Decided in float, watertight; t, u and v come from what decided. For previews.
@@ -210,7 +210,8 @@ typedef struct GnomonSceneStats {
     uint64_t node_count;
     // Nodes without children.
     uint64_t leaf_count;
-    // Triangles stored in leaves; those of zero area, which nothing hits, are not stored.
+    // Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a BVH cannot
+    // tell apart.
     uint64_t reference_count;
     // Triangles left out by `GNOMON_INVALID_SKIP`.
     uint64_t skipped_count;

@@ -18,7 +18,7 @@ fn build(mesh: &Mesh, options: BuildOptions) -> Scene {
 /// cap, so on a small CPU some are the same.
 fn variants() -> Vec<BuildOptions> {
     let of = |structure, quality, isa| BuildOptions { structure, quality, isa, ..BuildOptions::default() };
-    let qualities = [Quality::Low, Quality::Medium];
+    let qualities = [Quality::Low, Quality::Medium, Quality::High];
     let binary = qualities.map(|quality| of(Structure::Bvh, quality, Isa::Auto));
     let wide = [Isa::Scalar, Isa::Sse42, Isa::Avx2, Isa::Avx512]
         .into_iter()

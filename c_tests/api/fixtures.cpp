@@ -15,6 +15,7 @@ const std::vector<Named> kStructures{
 const std::vector<Named> kQualities{
     {"low", GNOMON_QUALITY_LOW},
     {"medium", GNOMON_QUALITY_MEDIUM},
+    {"high", GNOMON_QUALITY_HIGH},
 };
 const std::vector<Named> kPrecisions{
     {"fast", GNOMON_PRECISION_FAST},
@@ -25,7 +26,6 @@ const std::vector<Unbuilt> kUnbuilt{
     {"GNOMON_STRUCTURE_OCTREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_OCTREE},
     {"GNOMON_STRUCTURE_KD_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_KD_TREE},
     {"GNOMON_STRUCTURE_BSP_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_BSP_TREE},
-    {"GNOMON_QUALITY_HIGH", &GnomonBuildOptions::quality, GNOMON_QUALITY_HIGH},
     {"GNOMON_PRECISION_EXACT", &GnomonBuildOptions::precision, GNOMON_PRECISION_EXACT},
 };
 const std::vector<Named> kIsas{

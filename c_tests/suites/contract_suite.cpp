@@ -19,7 +19,7 @@ Options options() {
     Options options;
     options.structures = {GNOMON_STRUCTURE_BVH, GNOMON_STRUCTURE_WIDE_BVH};
     options.precisions = {GNOMON_PRECISION_ACCURATE};
-    options.qualities = {GNOMON_QUALITY_LOW, GNOMON_QUALITY_MEDIUM};
+    options.qualities = {GNOMON_QUALITY_LOW, GNOMON_QUALITY_MEDIUM, GNOMON_QUALITY_HIGH};
     options.ray_kinds = {"primary", "bounce", "shadow", "random"};
     options.calls = {CallForm::prefilled};
     options.ray_count = options.oracle_ray_count = ray_count_or(5'000);

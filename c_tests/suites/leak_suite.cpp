@@ -146,9 +146,10 @@ std::vector<std::unique_ptr<Backend>> backends(const Scene& scene) {
     constexpr std::size_t brute_force_triangles = 200;  // more would take most of the suite's time
     std::vector<std::unique_ptr<Backend>> made;
     for (const std::uint32_t precision : {GNOMON_PRECISION_FAST, GNOMON_PRECISION_ACCURATE}) {
-        for (const std::uint32_t quality : {GNOMON_QUALITY_LOW, GNOMON_QUALITY_MEDIUM})
+        for (const std::uint32_t quality : {GNOMON_QUALITY_LOW, GNOMON_QUALITY_MEDIUM, GNOMON_QUALITY_HIGH}) {
             made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_BVH, quality, precision));
-        made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_WIDE_BVH, GNOMON_QUALITY_MEDIUM, precision));
+            made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_WIDE_BVH, quality, precision));
+        }
         if (scene.triangle_count() <= brute_force_triangles)
             made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_BRUTE_FORCE, GNOMON_QUALITY_MEDIUM, precision));
     }

@@ -2,9 +2,10 @@
 
 use super::brute_force::BruteForce;
 use super::bvh::{BinnedSah, Bvh, Median};
+use super::reference::{Reference, TriangleSource, gather};
 use super::stats::Shape;
 use super::{BuildContext, BuildFailure, Quality, Structure, WideBvh};
-use crate::geometry::{Aabb, Triangle};
+use crate::geometry::Aabb;
 
 pub(crate) enum AnyAccel {
     BruteForce(BruteForce),
@@ -35,32 +36,39 @@ pub(crate) fn choose(asked: Structure, triangle_count: usize) -> Structure {
 }
 
 /// What the choice names that has no builder yet.
-pub(crate) fn unsupported(structure: Structure, quality: Quality) -> Option<&'static str> {
-    let structure = match structure {
+pub(crate) fn unsupported(structure: Structure) -> Option<&'static str> {
+    match structure {
         Structure::Auto | Structure::BruteForce | Structure::Bvh | Structure::WideBvh => None,
         Structure::Grid => Some("GNOMON_STRUCTURE_GRID, the uniform grid,"),
         Structure::Octree => Some("GNOMON_STRUCTURE_OCTREE, the octree,"),
         Structure::KdTree => Some("GNOMON_STRUCTURE_KD_TREE, the kd-tree,"),
         Structure::BspTree => Some("GNOMON_STRUCTURE_BSP_TREE, the BSP tree,"),
-    };
-    structure.or_else(|| (quality == Quality::High).then_some("GNOMON_QUALITY_HIGH"))
+    }
 }
 
 /// Builds what [`choose`] made of a choice that is not [`unsupported`].
 pub(crate) fn build(
     structure: Structure,
     quality: Quality,
-    triangles: Vec<Triangle>,
+    references: Vec<Reference>,
     bounds: Aabb,
+    source: &impl TriangleSource,
     context: &BuildContext,
 ) -> Result<AnyAccel, BuildFailure> {
     match (structure, quality) {
-        (Structure::BruteForce, _) => BruteForce::build(triangles, context).map(AnyAccel::BruteForce),
-        (Structure::Bvh, Quality::Low) => Bvh::build(triangles, bounds, &Median, context).map(AnyAccel::Bvh),
-        (Structure::Bvh, Quality::Medium) => {
-            Bvh::build(triangles, bounds, &BinnedSah::FOR_SCALAR_LEAVES, context).map(AnyAccel::Bvh)
+        (Structure::BruteForce, _) => {
+            let triangles = gather(source, &references, context)?;
+            context.release(references);
+            BruteForce::build(triangles, context).map(AnyAccel::BruteForce)
         }
-        (Structure::WideBvh, _) => WideBvh::build(triangles, bounds, quality, context).map(AnyAccel::WideBvh),
+        (Structure::Bvh, Quality::Low) => {
+            Bvh::build(references, bounds, &Median, quality, source, context).map(AnyAccel::Bvh)
+        }
+        (Structure::Bvh, Quality::Medium | Quality::High) => {
+            let rule = &BinnedSah::FOR_SCALAR_LEAVES;
+            Bvh::build(references, bounds, rule, quality, source, context).map(AnyAccel::Bvh)
+        }
+        (Structure::WideBvh, _) => WideBvh::build(references, bounds, quality, source, context).map(AnyAccel::WideBvh),
         _ => unreachable!("{structure:?} of quality {quality:?} is refused before anything is built"),
     }
 }

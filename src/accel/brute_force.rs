@@ -17,6 +17,7 @@ impl BruteForce {
 
     pub(crate) fn shape(&self) -> Shape {
         Shape {
+            reference_count: self.triangles.len(),
             node_count: 0,
             leaf_count: 0,
             depth: 0,

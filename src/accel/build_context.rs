@@ -5,6 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
+use crate::simd::{DetectedIsa, Isa, Simd, SimdKernel};
+
 /// Why a build ended without a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BuildFailure {
@@ -45,6 +47,9 @@ impl Watch {
     }
 }
 
+/// How many elements a chunk has: so many that starting a task for it does not show.
+pub(crate) const CHUNK: usize = 1 << 14;
+
 /// Threads, memory and progress of one build.
 pub(crate) struct BuildContext<'a> {
     /// None: the caller's thread alone.
@@ -53,11 +58,26 @@ pub(crate) struct BuildContext<'a> {
     held: AtomicUsize,
     peak: AtomicUsize,
     watch: &'a Watch,
+    isa: DetectedIsa,
 }
 
 impl<'a> BuildContext<'a> {
-    pub(crate) fn new(pool: Option<&'a ThreadPool>, limit: Option<usize>, watch: &'a Watch) -> Self {
-        Self { pool, limit, held: AtomicUsize::new(0), peak: AtomicUsize::new(0), watch }
+    pub(crate) fn new(pool: Option<&'a ThreadPool>, limit: Option<usize>, isa: Isa, watch: &'a Watch) -> Self {
+        Self { pool, limit, held: AtomicUsize::new(0), peak: AtomicUsize::new(0), watch, isa: isa.resolve() }
+    }
+
+    /// Runs a kernel on the build's instruction set. Builders use no operation that differs between them, so that they
+    /// all build the same.
+    pub(crate) fn vectorize<K: SimdKernel>(&self, kernel: K) -> K::Output {
+        match self.isa {
+            DetectedIsa::Scalar(simd) => simd.vectorize(kernel),
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Sse42(simd) => simd.vectorize(kernel),
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Avx2(simd) => simd.vectorize(kernel),
+            #[cfg(target_arch = "x86_64")]
+            DetectedIsa::Avx512(simd) => simd.vectorize(kernel),
+        }
     }
 
     /// Announces units of work that [`BuildContext::advance`] will count.
@@ -101,6 +121,75 @@ impl<'a> BuildContext<'a> {
         Ok(vector)
     }
 
+    /// As [`BuildContext::filled`], by this thread alone.
+    pub(crate) fn filled_here<T: Copy>(&self, count: usize, value: T) -> Result<Vec<T>, BuildFailure> {
+        let mut vector = self.reserve(count)?;
+        vector.resize(count, value);
+        Ok(vector)
+    }
+
+    /// Appends `make(state, i)` for each `i` below `count`, on all threads; `start(i)` makes the state of a run of
+    /// numbers from `i` on.
+    pub(crate) fn collect_with<T: Send, A>(
+        &self,
+        vector: &mut Vec<T>,
+        count: u32,
+        start: impl Fn(u32) -> A + Sync,
+        make: impl Fn(&mut A, u32) -> T + Sync,
+    ) {
+        let next = |state: &mut Option<A>, number| make(state.get_or_insert_with(|| start(number)), number);
+        if self.is_parallel() {
+            vector.par_extend((0..count).into_par_iter().map_init(|| None, next));
+        } else {
+            let mut state = None;
+            vector.extend((0..count).map(|number| next(&mut state, number)));
+        }
+    }
+
+    /// Maps chunks of a slice and combines in their order what they give; `None` of an empty slice. The chunks are the
+    /// same for any number of threads.
+    pub(crate) fn reduce_chunks<T: Sync, A: Send>(
+        &self,
+        values: &[T],
+        map: impl Fn(&[T]) -> A + Sync + Send,
+        combine: impl Fn(A, A) -> A + Sync + Send,
+    ) -> Option<A> {
+        if self.is_parallel() && values.len() > CHUNK {
+            values.par_chunks(CHUNK).map(map).reduce_with(combine)
+        } else {
+            values.chunks(CHUNK).map(map).reduce(combine)
+        }
+    }
+
+    /// As [`BuildContext::reduce_chunks`], but the chunks may be written to, and what they give is kept.
+    pub(crate) fn map_chunks<T: Send, A: Send>(
+        &self,
+        values: &mut [T],
+        map: impl Fn(&mut [T]) -> A + Sync + Send,
+    ) -> Vec<A> {
+        if self.is_parallel() && values.len() > CHUNK {
+            values.par_chunks_mut(CHUNK).map(map).collect()
+        } else {
+            values.chunks_mut(CHUNK).map(map).collect()
+        }
+    }
+
+    /// Maps each value, on all threads.
+    pub(crate) fn map_each<T: Send, A: Send>(&self, values: Vec<T>, map: impl Fn(T) -> A + Sync + Send) -> Vec<A> {
+        if self.is_parallel() {
+            values.into_par_iter().map(map).collect()
+        } else {
+            values.into_iter().map(map).collect()
+        }
+    }
+
+    /// Frees what a vector does not need.
+    pub(crate) fn shrink<T>(&self, vector: &mut Vec<T>) {
+        let before = vector.capacity();
+        vector.shrink_to_fit();
+        self.held.fetch_sub((before - vector.capacity()) * size_of::<T>(), Ordering::Relaxed);
+    }
+
     /// Frees what [`BuildContext::reserve`] gave.
     pub(crate) fn release<T>(&self, vector: Vec<T>) {
         self.held.fetch_sub(vector.capacity() * size_of::<T>(), Ordering::Relaxed);
@@ -130,4 +219,16 @@ impl<'a> BuildContext<'a> {
     ) -> (A, B) {
         if self.is_parallel() { rayon::join(first, second) } else { (first(), second()) }
     }
+}
+
+/// The parts of these lengths, in their order.
+pub(super) fn slices<'a, T>(mut values: &'a mut [T], lengths: &[usize]) -> Vec<&'a mut [T]> {
+    lengths
+        .iter()
+        .map(|&length| {
+            let (part, rest) = std::mem::take(&mut values).split_at_mut(length);
+            values = rest;
+            part
+        })
+        .collect()
 }

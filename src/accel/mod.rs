@@ -5,12 +5,14 @@ mod brute_force;
 mod build_context;
 mod bvh;
 mod leaf;
+mod reference;
 mod stats;
 mod wide_bvh;
 
 pub(crate) use any_accel::{AnyAccel, build, choose, unsupported};
 pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
 pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Query};
+pub(crate) use reference::{Bounds8, Reference, TriangleSource};
 pub use stats::{Precision, Quality, Stats, Structure};
 pub(crate) use wide_bvh::{Vectorized, WideBvh};
 

@@ -55,7 +55,8 @@ pub struct Stats {
     pub node_count: u64,
     /// Nodes without children.
     pub leaf_count: u64,
-    /// Triangles stored; those of zero area, which nothing hits, are not.
+    /// Triangles stored: not those of zero area, which nothing hits, nor all of those that are the same to the bit and
+    /// that a BVH cannot tell apart.
     pub reference_count: u64,
     /// Triangles left out because a coordinate is not finite.
     pub skipped_count: u64,
@@ -84,6 +85,7 @@ pub struct Stats {
 /// What a structure tells about itself; the scene knows the rest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shape {
+    pub(crate) reference_count: usize,
     pub(crate) node_count: usize,
     pub(crate) leaf_count: usize,
     pub(crate) depth: u32,

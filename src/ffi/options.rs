@@ -26,11 +26,11 @@ pub const GNOMON_STRUCTURE_BVH: u32 = 6;
 /// and smallest here. At most 2^28 triangles.
 pub const GNOMON_STRUCTURE_WIDE_BVH: u32 = 7;
 
-/// Fastest build. BVH: split at the median of the longest axis.
+/// Fastest build. BVH: split at the median of the longest axis. WIDE_BVH: 8 bins and larger leaves.
 pub const GNOMON_QUALITY_LOW: u32 = 0;
-/// Good for both. BVH: binned surface area heuristic (Wald 2007).
+/// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007).
 pub const GNOMON_QUALITY_MEDIUM: u32 = 1;
-/// Best queries. Not built yet.
+/// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
 pub const GNOMON_QUALITY_HIGH: u32 = 2;
 
 /// Decided in float, watertight; t, u and v come from what decided. For previews.

@@ -86,7 +86,8 @@ pub struct GnomonSceneStats {
     pub node_count: u64,
     /// Nodes without children.
     pub leaf_count: u64,
-    /// Triangles stored in leaves; those of zero area, which nothing hits, are not stored.
+    /// Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a BVH cannot
+    /// tell apart.
     pub reference_count: u64,
     /// Triangles left out by `GNOMON_INVALID_SKIP`.
     pub skipped_count: u64,

@@ -4,14 +4,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::builder::Geometry;
-use super::flatten::{Flat, flatten};
+use super::flatten::{Flat, Meshes, flatten};
 use super::{BuildError, BuildOptions, Scene, threads};
 use crate::accel::{self, BuildContext, Precision, Stats, Structure, Watch};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
     let precision = (options.precision == Precision::Exact).then_some("GNOMON_PRECISION_EXACT");
-    if let Some(what) = accel::unsupported(options.structure, options.quality).or(precision) {
+    if let Some(what) = accel::unsupported(options.structure).or(precision) {
         return Err(BuildError::Unsupported(what));
     }
     let own_pool;
@@ -24,7 +24,7 @@ pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch:
         }
     };
     let limit = usize::try_from(options.memory_limit_bytes).ok().filter(|&limit| limit != 0);
-    let context = BuildContext::new(pool, limit, watch);
+    let context = BuildContext::new(pool, limit, options.isa, watch);
     context.install(|| build_with(geometries, options, &context))
 }
 
@@ -34,19 +34,18 @@ fn build_with(
     context: &BuildContext,
 ) -> Result<Scene, BuildError> {
     let start = Instant::now();
-    let Flat { triangles, bounds, skipped_count } = flatten(geometries, options.invalid_triangles, context)?;
-    let added_count: usize = geometries.iter().map(|geometry| geometry.triangles.len()).sum();
-    let reference_count = triangles.len();
-    let structure = accel::choose(options.structure, reference_count);
-    let accel = accel::build(structure, options.quality, triangles, bounds, context)?;
+    let meshes = Meshes::new(geometries)?;
+    let Flat { references, bounds, skipped_count } = flatten(&meshes, options.invalid_triangles, context)?;
+    let structure = accel::choose(options.structure, references.len());
+    let accel = accel::build(structure, options.quality, references, bounds, &meshes, context)?;
     let shape = accel.shape();
     // Only the wide BVH has kernels beyond the scalar one.
     let isa = if structure == Structure::WideBvh { options.isa } else { Isa::Scalar }.resolve();
     let stats = Stats {
-        triangle_count: (added_count - skipped_count) as u64,
+        triangle_count: (meshes.triangle_count() - skipped_count) as u64,
         node_count: shape.node_count as u64,
         leaf_count: shape.leaf_count as u64,
-        reference_count: reference_count as u64,
+        reference_count: shape.reference_count as u64,
         skipped_count: skipped_count as u64,
         depth: shape.depth,
         structure,

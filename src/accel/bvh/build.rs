@@ -1,247 +1,274 @@
 //! Building top down: references to triangles are split until a rule says leaf; the rules are in files of their own.
 
-use glam::Vec4;
-use rayon::prelude::*;
+use arrayvec::ArrayVec;
 
-use super::Bvh;
-use super::node::{MOST_LEVELS, Node, NodePair};
-use super::split_sah::{NODE_COST, TRIANGLE_COST};
+use super::node::{MOST_LEVELS, Node};
+use crate::accel::reference::{Bounds8, Reference, TriangleSource};
 use crate::accel::{BuildContext, BuildFailure};
-use crate::geometry::{Aabb, Triangle};
+use crate::simd::{Scalar, Simd, SimdKernel};
 
-/// A triangle's box and where the triangle is; 32 bytes. The index travels in the fourth lane of `lower`, so that box
-/// arithmetic is one instruction on four lanes.
-#[derive(Clone, Copy)]
-pub(crate) struct Reference {
-    pub(super) lower: Vec4,
-    pub(super) upper: Vec4,
+/// A binary tree in two parts: what lies below a few thousand references is a subtree of its own, built by one thread.
+pub(in crate::accel) struct BinaryTree<'r> {
+    /// What lies above the subtrees, in depth-first order: a node's first child follows it, and its `first` is the second
+    /// one. A leaf's `first` is a subtree.
+    pub(in crate::accel) top: Vec<Node>,
+    /// In depth-first order, too.
+    pub(in crate::accel) subtrees: Vec<Subtree<'r>>,
+    pub(in crate::accel) depth: u32,
 }
 
-impl Reference {
-    fn new(bounds: &Aabb, index: usize) -> Self {
-        Self { lower: bounds.lower.extend(f32::from_bits(index as u32)), upper: bounds.upper.extend(0.0) }
-    }
-
-    pub(super) fn index(&self) -> u32 {
-        self.lower.w.to_bits()
-    }
-
-    /// Halved before the sum, which else may overflow.
-    pub(super) fn centre(&self) -> Vec4 {
-        self.lower * 0.5 + self.upper * 0.5
-    }
+/// Nodes as in [`BinaryTree::top`]; a leaf's `first` counts from the subtree's first reference.
+pub(in crate::accel) struct Subtree<'r> {
+    pub(in crate::accel) nodes: Vec<Node>,
+    pub(in crate::accel) references: &'r [Reference],
 }
 
-/// A box on four lanes, the fourth without meaning.
-#[derive(Clone, Copy)]
-pub(super) struct Bounds4 {
-    pub(super) lower: Vec4,
-    pub(super) upper: Vec4,
+/// A node's two children: where the second one's references begin, and their boxes.
+pub(crate) struct Split {
+    pub(super) middle: usize,
+    pub(super) bounds: [Bounds8; 2],
 }
 
-impl Bounds4 {
-    pub(super) const EMPTY: Self = Self { lower: Vec4::INFINITY, upper: Vec4::NEG_INFINITY };
-
-    pub(super) fn grow(&mut self, lower: Vec4, upper: Vec4) {
-        self.lower = self.lower.min(lower);
-        self.upper = self.upper.max(upper);
-    }
-
-    pub(super) fn union(mut self, other: Self) -> Self {
-        self.grow(other.lower, other.upper);
-        self
-    }
-
-    pub(super) fn half_area(&self) -> f32 {
-        let size = self.upper - self.lower;
-        size.x * size.y + size.y * size.z + size.z * size.x
-    }
-
-    fn to_aabb(self) -> Aabb {
-        Aabb { lower: self.lower.truncate(), upper: self.upper.truncate() }
+impl Split {
+    #[inline(always)]
+    pub(super) fn at<S: Simd>(simd: S, middle: usize, references: &[Reference]) -> Self {
+        let (left, right) = references.split_at(middle);
+        Self { middle, bounds: [union(simd, left), union(simd, right)] }
     }
 }
 
-/// What a split rule may know of a node.
-pub(crate) struct NodeExtent {
-    pub(super) bounds: Bounds4,
-    pub(super) centres: Bounds4,
-}
+struct Union<'a>(&'a [Reference]);
 
-impl NodeExtent {
-    const EMPTY: Self = Self { bounds: Bounds4::EMPTY, centres: Bounds4::EMPTY };
+impl SimdKernel for Union<'_> {
+    type Output = Bounds8;
 
-    fn of(references: &[Reference], context: &BuildContext) -> Self {
-        reduce_chunks(
-            references,
-            context,
-            |chunk| {
-                let mut extent = Self::EMPTY;
-                for reference in chunk {
-                    extent.bounds.grow(reference.lower, reference.upper);
-                    let centre = reference.centre();
-                    extent.centres.grow(centre, centre);
-                }
-                extent
-            },
-            |a, b| Self { bounds: a.bounds.union(b.bounds), centres: a.centres.union(b.centres) },
-        )
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Bounds8 {
+        union(simd, self.0)
     }
 }
 
-/// Decides about a node: reorders its references and says where the second child's begin, or `None` for a leaf.
+#[inline(always)]
+fn union<S: Simd>(simd: S, references: &[Reference]) -> Bounds8 {
+    let mut bounds = Bounds8::EMPTY;
+    for reference in references {
+        bounds.grow(simd, reference.bounds());
+    }
+    bounds
+}
+
+/// Decides about a node: reorders its references and says where the second child's begin, or `None` for a leaf or where it
+/// cannot tell the references apart.
 pub(crate) trait SplitRule: Sync {
+    /// What the rule needs room for, kept from node to node.
+    type Scratch: Default;
+
     /// Nodes with more triangles are always split.
     fn most_in_leaf(&self) -> usize;
 
-    fn split(&self, references: &mut [Reference], extent: &NodeExtent, context: &BuildContext) -> Option<usize>;
-}
-
-/// Maps chunks of a slice, on all threads where it is long, and combines what they give. The result does not depend
-/// on the number of threads as long as `combine` is associative and commutative to the bit.
-pub(super) fn reduce_chunks<T: Send>(
-    references: &[Reference],
-    context: &BuildContext,
-    map: impl Fn(&[Reference]) -> T + Sync,
-    combine: impl Fn(T, T) -> T + Sync,
-) -> T {
-    /// Long enough that starting a task does not show.
-    const CHUNK: usize = 1 << 15;
-    if references.len() <= CHUNK || !context.is_parallel() {
-        return map(references);
-    }
-    references.par_chunks(CHUNK).map(&map).reduce_with(&combine).expect("a slice longer than a chunk has chunks")
-}
-
-pub(super) fn build<R: SplitRule>(
-    triangles: Vec<Triangle>,
-    bounds: Aabb,
-    rule: &R,
-    context: &BuildContext,
-) -> Result<Bvh, BuildFailure> {
-    let count = triangles.len();
-    // Half of the work is in the tree, the rest before and after.
-    context.expect(4 * count);
-
-    let mut references = context.reserve::<Reference>(count)?;
-    let reference = |(index, triangle): (usize, &Triangle)| Reference::new(&triangle.bounds(), index);
-    if context.is_parallel() {
-        references.par_extend(triangles.par_iter().enumerate().map(reference));
-    } else {
-        references.extend(triangles.iter().enumerate().map(reference));
-    }
-    context.advance(count)?;
-
-    let mut sparse = context.filled(count - 1, NodePair::EMPTY)?;
-    let subtree = Subtree { rule, context }.build(&mut references, &mut sparse, 0, 0, 0)?;
-    let mut pairs = context.reserve(subtree.pair_count)?;
-    let (root, sah_cost) = compact(subtree.node, &sparse, &mut pairs);
-    context.release(sparse);
-
-    let mut sorted = context.reserve(count)?;
-    let sort = |reference: &Reference| triangles[reference.index() as usize];
-    if context.is_parallel() {
-        sorted.par_extend(references.par_iter().map(sort));
-    } else {
-        sorted.extend(references.iter().map(sort));
-    }
-    context.release(references);
-    context.release(triangles);
-    context.advance(count)?;
-    Ok(Bvh { bounds, root, pairs, triangles: sorted, depth: subtree.depth, sah_cost })
-}
-
-/// One node and what lies below it.
-struct Built {
-    node: Node,
-    pair_count: usize,
-    depth: u32,
-}
-
-struct Subtree<'a, R> {
-    rule: &'a R,
-    context: &'a BuildContext<'a>,
-}
-
-impl<R: SplitRule> Subtree<'_, R> {
-    /// `references` are those from `first` on; their subtree has room for its pairs, one fewer than there are
-    /// references, in `pairs`, which are those from `first_pair` on.
-    fn build(
+    /// Must be `#[inline(always)]`.
+    fn split<S: Simd>(
         &self,
+        simd: S,
         references: &mut [Reference],
-        pairs: &mut [NodePair],
-        first: usize,
-        first_pair: usize,
-        level: usize,
-    ) -> Result<Built, BuildFailure> {
-        /// Smaller subtrees are built by one thread without a look at the watch.
-        const TASK: usize = 4096;
-        let count = references.len();
-        if count > TASK {
-            self.context.check()?;
-        }
-        let extent = NodeExtent::of(references, self.context);
-        let Some(middle) = self.split(references, &extent, level) else {
-            let node = Node::new(&extent.bounds.to_aabb(), first as u32, count as u32);
-            self.context.advance(2 * count)?;
-            return Ok(Built { node, pair_count: 0, depth: 1 });
-        };
+        bounds: &Bounds8,
+        scratch: &mut Self::Scratch,
+    ) -> Option<Split>;
 
-        let (left_references, right_references) = references.split_at_mut(middle);
-        let (pair, below) = pairs.split_first_mut().expect("room for one pair fewer than references");
-        let (left_pairs, right_pairs) = below.split_at_mut(middle - 1);
-        let mut build_left = || self.build(left_references, left_pairs, first, first_pair + 1, level + 1);
-        let mut build_right =
-            || self.build(right_references, right_pairs, first + middle, first_pair + middle, level + 1);
-        let (left, right) =
-            if count > TASK { self.context.join(build_left, build_right) } else { (build_left(), build_right()) };
-        let (left, right) = (left?, right?);
-
-        *pair = NodePair { children: [left.node, right.node] };
-        Ok(Built {
-            node: Node::new(&extent.bounds.to_aabb(), first_pair as u32, 0),
-            pair_count: 1 + left.pair_count + right.pair_count,
-            depth: 1 + left.depth.max(right.depth),
-        })
-    }
-
-    /// The rule's answer, but halves where it would make a leaf too large or the tree too deep for a traversal's stack.
-    fn split(&self, references: &mut [Reference], extent: &NodeExtent, level: usize) -> Option<usize> {
-        /// From here halving 2^32 references ends in time.
-        const LAST_FREE_LEVEL: usize = MOST_LEVELS - 33;
-        let count = references.len();
-        if count == 1 {
-            return None;
-        }
-        let middle = if level < LAST_FREE_LEVEL { self.rule.split(references, extent, self.context) } else { None };
-        middle.or_else(|| (count > self.rule.most_in_leaf()).then_some(count / 2))
-    }
+    /// As [`SplitRule::split`], on all threads.
+    fn split_together(&self, references: &mut [Reference], bounds: &Bounds8, context: &BuildContext) -> Option<Split>;
 }
 
-/// Copies the used pairs in depth-first order, and adds up the expected cost of a ray that meets the root.
-fn compact(root: Node, sparse: &[NodePair], pairs: &mut Vec<NodePair>) -> (Node, f64) {
-    let mut cost = 0.0;
-    let mut count_cost = |node: &Node| {
-        cost += node.half_area() * if node.is_leaf() { node.count as f64 * TRIANGLE_COST } else { NODE_COST };
-    };
-    count_cost(&root);
-    let mut compacted = root;
-    if root.is_leaf() {
-        return (root, f64::from(root.count) * TRIANGLE_COST);
-    }
-    compacted.first = 0;
-    pairs.push(sparse[root.first as usize]);
-    let mut pending = vec![0];
-    while let Some(at) = pending.pop() {
-        for child in 0..2 {
-            let node = pairs[at].children[child];
-            count_cost(&node);
-            if !node.is_leaf() {
-                pairs[at].children[child].first = pairs.len() as u32;
-                pending.push(pairs.len());
-                pairs.push(sparse[node.first as usize]);
+/// From here halving 2^32 references ends in time.
+const LAST_FREE_LEVEL: usize = MOST_LEVELS - 33;
+
+/// Smaller trees are built by one thread without a look at the watch.
+pub(super) const MOST_IN_SUBTREE: usize = 4096;
+
+/// The references are reordered; the tree's subtrees have them.
+pub(in crate::accel) fn build<'r, R: SplitRule, T: TriangleSource>(
+    references: &'r mut [Reference],
+    rule: &R,
+    source: &T,
+    context: &BuildContext,
+) -> Result<BinaryTree<'r>, BuildFailure> {
+    let union = |chunk: &[Reference]| context.vectorize(Union(chunk));
+    let bounds = context.reduce_chunks(references, union, |a, b| a.union(Scalar, &b));
+    let bounds = bounds.unwrap_or(Bounds8::EMPTY);
+    let part = Part { references, bounds, level: 0, is_distinct: false };
+    let branch = Builder { rule, source, context }.build(part)?;
+    let mut tree = BinaryTree { top: Vec::new(), subtrees: Vec::new(), depth: 0 };
+    tree.append(branch);
+    Ok(tree)
+}
+
+/// What is to become a node, and what lies below it.
+struct Part<'r> {
+    references: &'r mut [Reference],
+    bounds: Bounds8,
+    level: usize,
+    /// Whether no triangle is there twice.
+    is_distinct: bool,
+}
+
+enum Branch<'r> {
+    Subtree { subtree: Subtree<'r>, depth: u32 },
+    Node { bounds: Bounds8, children: Box<[Branch<'r>; 2]> },
+}
+
+impl<'r> BinaryTree<'r> {
+    fn append(&mut self, branch: Branch<'r>) {
+        match branch {
+            Branch::Subtree { subtree, depth } => {
+                self.top.push(Node { first: self.subtrees.len() as u32, count: 1, ..subtree.nodes[0] });
+                self.subtrees.push(subtree);
+                self.depth = self.depth.max(depth);
+            }
+            Branch::Node { bounds, children } => {
+                let at = self.top.len();
+                self.top.push(Node::new(&bounds.to_aabb(), 0, 0));
+                let [left, right] = *children;
+                self.append(left);
+                self.top[at].first = self.top.len() as u32;
+                self.append(right);
             }
         }
     }
-    (compacted, cost / root.half_area())
+}
+
+struct Builder<'a, R, T> {
+    rule: &'a R,
+    source: &'a T,
+    context: &'a BuildContext<'a>,
+}
+
+impl<R: SplitRule, T: TriangleSource> Builder<'_, R, T> {
+    fn build<'r>(&self, part: Part<'r>) -> Result<Branch<'r>, BuildFailure> {
+        self.context.check()?;
+        if part.references.len() <= MOST_IN_SUBTREE {
+            return self.subtree(part);
+        }
+        let Part { mut references, bounds, level, mut is_distinct } = part;
+        let mut split = None;
+        if level < LAST_FREE_LEVEL {
+            split = self.rule.split_together(references, &bounds, self.context);
+        }
+        if split.is_none() && !is_distinct {
+            is_distinct = true;
+            let count = drop_duplicates(references, self.source);
+            references = &mut references[..count];
+            if count <= MOST_IN_SUBTREE {
+                return self.subtree(Part { references, bounds, level, is_distinct });
+            }
+        }
+        let Split { middle, bounds: [left_bounds, right_bounds] } = split.unwrap_or_else(|| halve(Scalar, references));
+        let (left, right) = references.split_at_mut(middle);
+        let left = Part { references: left, bounds: left_bounds, level: level + 1, is_distinct };
+        let right = Part { references: right, bounds: right_bounds, level: level + 1, is_distinct };
+        let (left, right) = self.context.join(|| self.build(left), || self.build(right));
+        Ok(Branch::Node { bounds, children: Box::new([left?, right?]) })
+    }
+
+    fn subtree<'r>(&self, part: Part<'r>) -> Result<Branch<'r>, BuildFailure> {
+        let count = part.references.len();
+        let nodes = self.context.reserve(2 * count - 1)?;
+        let (mut subtree, depth) =
+            self.context.vectorize(GrowSubtree { rule: self.rule, source: self.source, nodes, part });
+        self.context.shrink(&mut subtree.nodes);
+        self.context.advance(count)?;
+        Ok(Branch::Subtree { subtree, depth })
+    }
+}
+
+struct GrowSubtree<'a, 'r, R, T> {
+    rule: &'a R,
+    source: &'a T,
+    /// Empty, with room for all.
+    nodes: Vec<Node>,
+    part: Part<'r>,
+}
+
+/// A node that waits, or is at work: its references are those from `begin` to `end`.
+#[derive(Clone, Copy)]
+struct Waiting {
+    begin: usize,
+    end: usize,
+    bounds: Bounds8,
+    level: usize,
+    is_distinct: bool,
+    /// Whose second child it is.
+    parent: usize,
+}
+
+impl<'r, R: SplitRule, T: TriangleSource> SimdKernel for GrowSubtree<'_, 'r, R, T> {
+    type Output = (Subtree<'r>, u32);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { rule, source, mut nodes, part: Part { references, bounds, level, is_distinct } } = self;
+        let mut scratch = R::Scratch::default();
+        let mut waiting = ArrayVec::<Waiting, MOST_LEVELS>::new_const();
+        let mut at_work = Waiting { begin: 0, end: references.len(), bounds, level, is_distinct, parent: 0 };
+        let (mut deepest, mut stored) = (level, 0);
+        loop {
+            let Waiting { begin, mut end, bounds, level, mut is_distinct, .. } = at_work;
+            deepest = deepest.max(level);
+            let mut split = None;
+            if end - begin > 1 && level < LAST_FREE_LEVEL {
+                split = rule.split(simd, &mut references[begin..end], &bounds, &mut scratch);
+            }
+            if split.is_none() && end - begin > rule.most_in_leaf() {
+                if !is_distinct {
+                    is_distinct = true;
+                    end = begin + drop_duplicates(&mut references[begin..end], source);
+                }
+                if end - begin > rule.most_in_leaf() {
+                    split = Some(halve(simd, &mut references[begin..end]));
+                }
+            }
+            let aabb = bounds.to_aabb();
+            if let Some(Split { middle, bounds: [left_bounds, right_bounds] }) = split {
+                let (middle, level) = (begin + middle, level + 1);
+                let right =
+                    Waiting { begin: middle, end, bounds: right_bounds, level, is_distinct, parent: nodes.len() };
+                waiting.push(right);
+                at_work = Waiting { begin, end: middle, bounds: left_bounds, level, is_distinct, parent: 0 };
+                nodes.push(Node::new(&aabb, 0, 0));
+                continue;
+            }
+            nodes.push(Node::new(&aabb, stored as u32, (end - begin) as u32));
+            if stored < begin {
+                references.copy_within(begin..end, stored);
+            }
+            stored += end - begin;
+            let Some(next) = waiting.pop() else { break };
+            nodes[next.parent].first = nodes.len() as u32;
+            at_work = next;
+        }
+        let references: &'r [Reference] = references;
+        (Subtree { nodes, references: &references[..stored] }, deepest as u32 + 1)
+    }
+}
+
+/// Keeps, of triangles that are the same to the bit, the one whose hits win. Returns how many are left, at the front.
+#[cold]
+fn drop_duplicates(references: &mut [Reference], source: &impl TriangleSource) -> usize {
+    let vertices = |reference: &Reference| reference.triangle(source).axes.map(|row| row.map(f32::to_bits));
+    references.sort_by_cached_key(|reference| (vertices(reference), reference.ids()));
+    let mut count = 1;
+    for next in 1..references.len() {
+        if vertices(&references[next]) != vertices(&references[count - 1]) {
+            references[count] = references[next];
+            count += 1;
+        }
+    }
+    count
+}
+
+/// Splits what no rule can: the smaller half of the boxes from the larger.
+#[cold]
+fn halve<S: Simd>(simd: S, references: &mut [Reference]) -> Split {
+    let extent = |reference: &Reference| reference.bounds().size().truncate().element_sum();
+    references.sort_unstable_by(|a, b| extent(a).total_cmp(&extent(b)).then_with(|| a.ids().cmp(&b.ids())));
+    Split::at(simd, references.len() / 2, references)
 }

@@ -3,8 +3,10 @@
 //! Shines on everything that is unevenly spread; each triangle is stored once. Fails where boxes overlap much: long
 //! diagonal triangles, many triangles in one place.
 
-mod build;
+pub(super) mod build;
 pub(super) mod node;
+mod pack;
+pub(super) mod reinsert;
 mod split_median;
 mod split_sah;
 mod traverse;
@@ -17,8 +19,9 @@ pub(crate) use split_sah::BinnedSah;
 use build::SplitRule;
 use node::{Node, NodePair};
 
+use super::reference::{Reference, TriangleSource};
 use super::stats::Shape;
-use super::{Accel, BuildContext, BuildFailure, ClosestHit, Query};
+use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
 use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
 
 pub(crate) struct Bvh {
@@ -33,14 +36,26 @@ pub(crate) struct Bvh {
 }
 
 impl Bvh {
-    /// At least one triangle; `bounds` contains them all.
+    /// At least one reference; `bounds` contains them all.
     pub(crate) fn build<R: SplitRule>(
-        triangles: Vec<Triangle>,
+        mut references: Vec<Reference>,
         bounds: Aabb,
         rule: &R,
+        quality: Quality,
+        source: &impl TriangleSource,
         context: &BuildContext,
     ) -> Result<Self, BuildFailure> {
-        let bvh = build::build(triangles, bounds, rule, context)?;
+        let count = references.len();
+        context.expect(2 * count);
+        let mut tree = build::build(&mut references, rule, source, context)?;
+        let mut reordered = Vec::new();
+        if quality == Quality::High {
+            tree = reinsert::reinsert(tree, &mut reordered, context)?;
+        }
+        let bvh = pack::pack(tree, bounds, source, context)?;
+        context.release(references);
+        context.release(reordered);
+        context.advance(count)?;
         #[cfg(any(test, debug_assertions))]
         bvh.validate().expect("a builder keeps the tree's invariants");
         Ok(bvh)
@@ -49,6 +64,7 @@ impl Bvh {
     pub(crate) fn shape(&self) -> Shape {
         let leaf_count = self.pairs.len() + 1;
         Shape {
+            reference_count: self.triangles.len(),
             node_count: self.pairs.len() + leaf_count,
             leaf_count,
             depth: self.depth,

@@ -1,5 +1,6 @@
 //! The tree as plain data.
 
+use crate::accel::reference::Bounds8;
 use crate::geometry::Aabb;
 
 /// 32 bytes.
@@ -31,6 +32,11 @@ impl Node {
     pub(in crate::accel) fn new(bounds: &Aabb, first: u32, count: u32) -> Self {
         let (lower, upper) = (bounds.lower.to_array(), bounds.upper.to_array());
         Self { planes: std::array::from_fn(|axis| [lower[axis], upper[axis]]), first, count }
+    }
+
+    pub(in crate::accel) fn bounds8(&self) -> Bounds8 {
+        let [x, y, z] = self.planes;
+        Bounds8([x[0], y[0], z[0], 0.0, -x[1], -y[1], -z[1], 0.0])
     }
 
     pub(in crate::accel) fn is_leaf(&self) -> bool {

@@ -3,191 +3,378 @@
 //! Source: Ylitie, Karras, Laine 2017, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs",
 //! section 3.1: for each binary node the least cost of representing it by at most i wide children, found bottom up.
 
+use arrayvec::ArrayVec;
+
 use super::WideBvh;
-use super::leaves::{Ids, Leaves};
+use super::leaves::{self, Ids, Leaves};
 use super::node::{Child, WideNode};
-use crate::accel::bvh::Bvh;
-use crate::accel::bvh::node::Node;
+use crate::accel::build_context::slices;
+use crate::accel::bvh::build::{BinaryTree, Subtree};
+use crate::accel::bvh::node::{MOST_LEVELS, Node};
+use crate::accel::reference::{Reference, TriangleSource};
 use crate::accel::{BuildContext, BuildFailure};
-use crate::simd::LANES;
+use crate::geometry::Aabb;
+use crate::simd::{LANES, Simd, SimdKernel};
 
 /// The cost of testing a node's eight children.
-const NODE_COST: f32 = 1.0;
+pub(super) const NODE_COST: f32 = 1.0;
 /// The cost of testing a leaf's triangles, however many.
-const LEAF_COST: f32 = 1.2;
+pub(super) const LEAF_COST: f32 = 1.2;
 
-/// What is known of a binary node with children.
+/// The least cost with at most `i + 1` wide children in a binary node's place, in areas of the root.
+type Costs = [f32; LANES];
+
+/// What becomes of a binary node: bit 31 says whether it becomes a leaf where it gets one wide child; the `i`-th three
+/// bits, of `i + 2` wide children, how many stand for its first child, 0 where one fewer costs no more.
 #[derive(Clone, Copy)]
-struct Plan {
-    /// The least cost with at most `i + 1` wide children in its place, in areas of the root.
-    costs: [f32; LANES - 1],
-    /// Of `i + 2` wide children, how many stand for the left child; 0 where one fewer costs no more.
-    left_shares: [u8; LANES - 1],
-    /// Whether it becomes a leaf where it gets one wide child.
-    is_leaf: bool,
-    /// The triangles below, which follow each other.
-    first: u32,
-    count: u32,
+struct Choice(u32);
+
+impl Choice {
+    const LEAF: u32 = 1 << 31;
+
+    fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    fn share(self, slots: usize) -> usize {
+        (self.0 >> (3 * (slots - 2))) as usize & 7
+    }
 }
+
+/// Nodes in depth-first order, and what becomes of each.
+struct Plan {
+    nodes: Vec<Node>,
+    choices: Vec<Choice>,
+    /// Of the root.
+    costs: Costs,
+}
+
+/// A binary node that becomes a wide child, and the number of slots that are left to it: more than one where it is a
+/// leaf of the tree's top, and the subtree there shares them out.
+#[derive(Clone, Copy)]
+struct Entry {
+    node: usize,
+    slots: usize,
+}
+
+type Entries = ArrayVec<Entry, LANES>;
 
 impl Plan {
-    const UNKNOWN: Self =
-        Self { costs: [0.0; LANES - 1], left_shares: [0; LANES - 1], is_leaf: false, first: 0, count: 0 };
-}
+    /// `leaf_costs` tells, for a leaf and its area, the costs and how many triangles there are.
+    fn new(
+        nodes: Vec<Node>,
+        scale: Option<f64>,
+        context: &BuildContext,
+        leaf_costs: impl Fn(&Node, f32) -> (Costs, u32),
+    ) -> Result<Self, BuildFailure> {
+        let mut choices = context.filled_here(nodes.len(), Choice(Choice::LEAF))?;
+        let costs = context.vectorize(Choose { nodes: &nodes, choices: &mut choices, scale, leaf_costs });
+        Ok(Self { nodes, choices, costs })
+    }
 
-struct Collapse<'a> {
-    binary: &'a Bvh,
-    plans: Vec<Plan>,
-    root_area: f64,
-}
+    /// The binary nodes that become wide children where this one has that many slots.
+    fn entries(&self, node: usize, slots: usize) -> Entries {
+        let mut entries = Entries::new();
+        self.share_out(Entry { node, slots }, &mut entries);
+        entries
+    }
 
-pub(super) fn collapse(binary: Bvh, ids: Ids, context: &BuildContext) -> Result<WideBvh, BuildFailure> {
-    let collapse = Collapse::plan(&binary, context)?;
-    let mut leaves = Leaves::reserve(binary.triangles.len(), ids, context)?;
-    let mut nodes = context.reserve(collapse.node_count())?;
-    let (root, depth) = collapse.emit(&mut nodes, &mut leaves);
-    let sah_cost = f64::from(collapse.cost(&binary.root, 1));
-    context.release(collapse.plans);
-    leaves.finish();
-    Ok(WideBvh { bounds: binary.bounds, corners: binary.bounds.corners4(), root, nodes, leaves, depth, sah_cost })
-}
-
-impl<'a> Collapse<'a> {
-    fn plan(binary: &'a Bvh, context: &BuildContext) -> Result<Self, BuildFailure> {
-        let plans = context.filled(binary.pairs.len(), Plan::UNKNOWN)?;
-        let mut collapse = Self { binary, plans, root_area: binary.root.half_area() };
-        // Children come after their parents.
-        for pair in (0..binary.pairs.len()).rev() {
-            collapse.plans[pair] = collapse.plan_pair(pair);
+    fn share_out(&self, entry: Entry, entries: &mut Entries) {
+        let Entry { node, mut slots } = entry;
+        if !self.nodes[node].is_leaf() {
+            let choice = self.choices[node];
+            while slots > 1 && choice.share(slots) == 0 {
+                slots -= 1;
+            }
+            if slots > 1 {
+                let share = choice.share(slots);
+                self.share_out(Entry { node: node + 1, slots: share }, entries);
+                self.share_out(Entry { node: self.nodes[node].first as usize, slots: slots - share }, entries);
+                return;
+            }
         }
-        Ok(collapse)
+        entries.push(Entry { node, slots });
     }
 
-    fn plan_pair(&self, pair: usize) -> Plan {
-        let [left, right] = &self.binary.pairs[pair].children;
-        let ((first, left_count), (_, right_count)) = (self.triangles(left), self.triangles(right));
-        let mut plan = Plan { first, count: left_count + right_count, ..Plan::UNKNOWN };
-
-        let distributed: [(f32, u8); LANES - 1] = std::array::from_fn(|index| {
-            let slots = index + 2;
-            (1..slots)
-                .map(|share| (self.cost(left, share) + self.cost(right, slots - share), share as u8))
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .expect("two slots can be shared out")
-        });
-        let (in_a_node, share) = distributed[LANES - 2];
-        plan.left_shares[LANES - 2] = share;
-        let area = self.area(&Node { planes: union(&left.planes, &right.planes), ..*left });
-        let as_node = NODE_COST * area + in_a_node;
-        let as_leaf = if plan.count as usize <= LANES { LEAF_COST * area } else { f32::INFINITY };
-        plan.is_leaf = as_leaf <= as_node;
-        plan.costs[0] = as_leaf.min(as_node);
-        for slots in 2..LANES {
-            let (cost, share) = distributed[slots - 2];
-            let is_worth_it = cost < plan.costs[slots - 2];
-            plan.costs[slots - 1] = if is_worth_it { cost } else { plan.costs[slots - 2] };
-            plan.left_shares[slots - 2] = if is_worth_it { share } else { 0 };
+    /// The triangles of a node that becomes a leaf: the first one and how many.
+    fn triangles(&self, node: usize) -> (usize, usize) {
+        let (mut first, mut last) = (node, node);
+        while !self.nodes[first].is_leaf() {
+            first += 1;
         }
-        plan
-    }
-
-    fn cost(&self, node: &Node, slots: usize) -> f32 {
-        if node.is_leaf() {
-            return LEAF_COST * self.area(node);
+        while !self.nodes[last].is_leaf() {
+            last = self.nodes[last].first as usize;
         }
-        self.plans[node.first as usize].costs[slots.min(LANES - 1) - 1]
+        let (first, last) = (&self.nodes[first], &self.nodes[last]);
+        (first.first as usize, (last.first + last.count - first.first) as usize)
     }
 
-    fn area(&self, node: &Node) -> f32 {
-        if self.root_area > 0.0 { (node.half_area() / self.root_area) as f32 } else { 1.0 }
-    }
-
-    fn triangles(&self, node: &Node) -> (u32, u32) {
-        if node.is_leaf() {
-            return (node.first, node.count);
-        }
-        let plan = &self.plans[node.first as usize];
-        (plan.first, plan.count)
-    }
-
-    /// Whether a node that gets one wide child becomes a leaf.
-    fn is_leaf(&self, node: &Node) -> bool {
-        node.is_leaf() || self.plans[node.first as usize].is_leaf
-    }
-
-    fn node_count(&self) -> usize {
-        let mut count = 0;
-        let mut pending = vec![self.binary.root];
-        while let Some(node) = pending.pop() {
-            if !self.is_leaf(&node) {
+    /// How many wide nodes there are where the root has that many slots.
+    fn wide_node_count(&self, slots: usize) -> usize {
+        let (mut count, mut pending) = (0, Vec::from_iter(self.entries(0, slots)));
+        while let Some(entry) = pending.pop() {
+            if !self.choices[entry.node].is_leaf() {
                 count += 1;
-                pending.extend(self.children(&node));
+                pending.extend(self.entries(entry.node, LANES));
             }
         }
         count
     }
+}
 
-    /// The binary nodes that become the children of a node's wide node.
-    fn children(&self, node: &Node) -> arrayvec::ArrayVec<Node, LANES> {
-        let mut children = arrayvec::ArrayVec::new();
-        self.share_out(node, LANES, &mut children);
-        children
-    }
+/// Fills in the choices, and returns the costs of the root.
+struct Choose<'a, L> {
+    nodes: &'a [Node],
+    choices: &'a mut [Choice],
+    scale: Option<f64>,
+    leaf_costs: L,
+}
 
-    fn share_out(&self, node: &Node, slots: usize, children: &mut arrayvec::ArrayVec<Node, LANES>) {
-        let mut slots = slots;
-        if !node.is_leaf() {
-            let plan = &self.plans[node.first as usize];
-            while slots > 1 && plan.left_shares[slots - 2] == 0 {
-                slots -= 1;
+impl<L: Fn(&Node, f32) -> (Costs, u32)> SimdKernel for Choose<'_, L> {
+    type Output = Costs;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _simd: S) -> Costs {
+        // Backwards, a node comes after its children: the first one is on top, the second one below.
+        let mut stack = ArrayVec::<(Costs, u32), { MOST_LEVELS + 1 }>::new_const();
+        for (node, choice) in self.nodes.iter().zip(self.choices).rev() {
+            let area = self.scale.map_or(1.0, |scale| (node.half_area() * scale) as f32);
+            if node.is_leaf() {
+                stack.push((self.leaf_costs)(node, area));
+                continue;
             }
-            if slots > 1 {
-                let [left, right] = &self.binary.pairs[node.first as usize].children;
-                let left_share = usize::from(plan.left_shares[slots - 2]);
-                self.share_out(left, left_share, children);
-                self.share_out(right, slots - left_share, children);
-                return;
-            }
-        }
-        children.push(*node);
-    }
-
-    /// Fills nodes and leaves; returns the root and the depth.
-    fn emit(&self, nodes: &mut Vec<WideNode>, leaves: &mut Leaves) -> (Child, u32) {
-        let root = self.emit_child(&self.binary.root, nodes, leaves);
-        let mut depth = 1;
-        let mut pending = Vec::new();
-        if !root.is_leaf() {
-            pending.push((root.node_index(), self.binary.root, 1));
-        }
-        while let Some((at, node, level)) = pending.pop() {
-            depth = depth.max(level + 1);
-            let mut children = self.children(&node);
-            // An occlusion ray goes on with the last slot that it meets: the largest.
-            children.sort_by(|a, b| a.half_area().total_cmp(&b.half_area()));
-            for (slot, child) in children.iter().enumerate() {
-                let wide = self.emit_child(child, nodes, leaves);
-                nodes[at].set(slot, &child.planes, wide);
-                if !wide.is_leaf() {
-                    pending.push((wide.node_index(), *child, level + 1));
+            let (left, left_count) = stack.pop().expect("a node has a first child");
+            let (right, right_count) = stack.pop().expect("a node has a second child");
+            let count = left_count.saturating_add(right_count);
+            let (mut costs, shares) = distribute(&left, &right);
+            let as_node = NODE_COST * area + costs[LANES - 1];
+            let as_leaf = if count as usize <= LANES { LEAF_COST * area } else { f32::INFINITY };
+            costs[0] = as_leaf.min(as_node);
+            let mut bits = if as_leaf <= as_node { Choice::LEAF } else { 0 };
+            for index in 1..LANES {
+                // Of eight slots a wide node uses as many as it can.
+                if costs[index] < costs[index - 1] || index == LANES - 1 {
+                    bits |= shares[index] << (3 * (index - 1));
                 }
+                costs[index] = costs[index].min(costs[index - 1]);
             }
+            *choice = Choice(bits);
+            stack.push((costs, count));
         }
-        (root, depth)
-    }
-
-    /// A leaf with its triangles, or an empty node.
-    fn emit_child(&self, node: &Node, nodes: &mut Vec<WideNode>, leaves: &mut Leaves) -> Child {
-        if self.is_leaf(node) {
-            let (first, count) = self.triangles(node);
-            let triangles = &self.binary.triangles[first as usize..][..count as usize];
-            return Child::leaf(leaves.push(triangles), triangles.len());
-        }
-        nodes.push(WideNode::EMPTY);
-        Child::node(nodes.len() - 1)
+        stack.pop().expect("a tree has a root").0
     }
 }
 
-fn union(a: &[[f32; 2]; 3], b: &[[f32; 2]; 3]) -> [[f32; 2]; 3] {
-    std::array::from_fn(|axis| [a[axis][0].min(b[axis][0]), a[axis][1].max(b[axis][1])])
+/// The least cost of `i + 1` wide children, at least one for each of two nodes, and how many of them stand for the first
+/// one.
+#[inline(always)]
+fn distribute(left: &Costs, right: &Costs) -> (Costs, [u32; LANES]) {
+    let (mut costs, mut shares) = ([f32::INFINITY; LANES], [0; LANES]);
+    let mut shifted = [f32::INFINITY; 2 * LANES];
+    shifted[LANES..].copy_from_slice(right);
+    for share in 1..LANES {
+        let rights: &[f32; LANES] = shifted[LANES - share..].first_chunk().expect("the array is twice as long");
+        for index in 0..LANES {
+            let cost = left[share - 1] + rights[index];
+            let is_better = cost < costs[index];
+            costs[index] = if is_better { cost } else { costs[index] };
+            shares[index] = if is_better { share as u32 } else { shares[index] };
+        }
+    }
+    (costs, shares)
+}
+
+/// A subtree on its way.
+struct Part<'r> {
+    plan: Plan,
+    references: &'r [Reference],
+}
+
+/// Where a subtree hangs in the wide tree.
+#[derive(Clone, Copy)]
+struct Place {
+    slots: usize,
+    level: u32,
+    first_node: usize,
+    first_triangle: usize,
+}
+
+pub(super) fn collapse<T: TriangleSource>(
+    tree: BinaryTree,
+    bounds: Aabb,
+    source: &T,
+    context: &BuildContext,
+) -> Result<WideBvh, BuildFailure> {
+    let BinaryTree { top, subtrees, .. } = tree;
+    let area = top[0].half_area();
+    let scale = (area > 0.0).then_some(1.0 / area);
+    let plan = |Subtree { nodes, references }| {
+        let plan = Plan::new(nodes, scale, context, |leaf, area| ([LEAF_COST * area; LANES], leaf.count))?;
+        Ok(Part { plan, references })
+    };
+    let parts = context.map_each(subtrees, plan).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let top = Plan::new(top, scale, context, |leaf, _| (parts[leaf.first as usize].plan.costs, u32::MAX))?;
+
+    let (top_nodes, mut places) = share_out_top(&top, parts.len());
+    let places_of_parts: Vec<(&Part, &Place)> = parts.iter().zip(&places).collect();
+    let node_counts = context.map_each(places_of_parts, |(part, place)| part.plan.wide_node_count(place.slots));
+    let triangle_counts: Vec<usize> = parts.iter().map(|part| part.references.len()).collect();
+    let (mut next_node, mut next_triangle) = (top_nodes.len(), 0);
+    for (index, place) in places.iter_mut().enumerate() {
+        (place.first_node, place.first_triangle) = (next_node, next_triangle);
+        next_node += node_counts[index];
+        next_triangle += triangle_counts[index];
+    }
+
+    let mut nodes = context.filled(next_node, WideNode::EMPTY)?;
+    let (above, below) = nodes.split_at_mut(top_nodes.len());
+    let root = emit_top(&top, &top_nodes, &parts, &places, above);
+    let mut leaves = Leaves::filled(next_triangle, Ids::new(source.starts()), context)?;
+    let (words, ids) = leaves.parts(&triangle_counts);
+    let tasks: Vec<_> = parts.into_iter().zip(places).zip(slices(below, &node_counts)).zip(words).collect();
+    let shapes = context.map_each(tasks, |(((part, place), nodes), words)| {
+        let shape = Emission { part: &part, place, nodes, words, ids, source }.run();
+        context.advance(part.references.len())?;
+        context.release(part.plan.nodes);
+        context.release(part.plan.choices);
+        Ok(shape)
+    });
+    let shapes = shapes.into_iter().collect::<Result<Vec<_>, _>>()?;
+    leaves.set_leaf_count(shapes.iter().map(|shape| shape.leaf_count).sum());
+    let depth = shapes.iter().map(|shape| shape.depth).max().expect("a tree has a subtree");
+    Ok(WideBvh { bounds, corners: bounds.corners4(), root, nodes, leaves, depth, sah_cost: f64::from(top.costs[0]) })
+}
+
+/// The wide nodes above the subtrees, each as the binary nodes that become its children, and each subtree's slots and
+/// level.
+fn share_out_top(top: &Plan, subtree_count: usize) -> (Vec<Entries>, Vec<Place>) {
+    let mut places = vec![Place { slots: 1, level: 1, first_node: 0, first_triangle: 0 }; subtree_count];
+    let (mut nodes, mut levels) = (Vec::new(), Vec::new());
+    if !top.nodes[0].is_leaf() {
+        nodes.push(top.entries(0, LANES));
+        levels.push(1);
+    }
+    let mut at = 0;
+    while at < nodes.len() {
+        let level = levels[at] + 1;
+        for entry in nodes[at].clone() {
+            let node = &top.nodes[entry.node];
+            if node.is_leaf() {
+                let place = &mut places[node.first as usize];
+                (place.slots, place.level) = (entry.slots, level);
+            } else {
+                nodes.push(top.entries(entry.node, LANES));
+                levels.push(level);
+            }
+        }
+        at += 1;
+    }
+    (nodes, places)
+}
+
+/// Fills the nodes above the subtrees; returns the root.
+fn emit_top(top: &Plan, entries: &[Entries], parts: &[Part], places: &[Place], nodes: &mut [WideNode]) -> Child {
+    let mut next = 1;
+    for (node, entries) in nodes.iter_mut().zip(entries) {
+        let mut children = Children::new();
+        for entry in entries {
+            let binary = &top.nodes[entry.node];
+            if binary.is_leaf() {
+                let index = binary.first as usize;
+                children.extend(parts[index].children(&places[index]));
+            } else {
+                children.push((*binary, Child::node(next)));
+                next += 1;
+            }
+        }
+        node.fill(children);
+    }
+    if nodes.is_empty() { parts[0].children(&places[0])[0].1 } else { Child::node(0) }
+}
+
+/// Wide children and their boxes.
+type Children = ArrayVec<(Node, Child), LANES>;
+
+impl WideNode {
+    /// An occlusion ray goes on with the last slot that it meets, so the largest is last.
+    fn fill(&mut self, mut children: Children) {
+        children.sort_by(|(a, _), (b, _)| a.half_area().total_cmp(&b.half_area()));
+        for (slot, (node, child)) in children.into_iter().enumerate() {
+            self.set(slot, &node.planes, child);
+        }
+    }
+}
+
+impl Part<'_> {
+    /// What the subtree has for the wide node above it.
+    fn children(&self, place: &Place) -> Children {
+        let mut next_node = place.first_node;
+        let mut child = |entry: Entry| {
+            let node = self.plan.nodes[entry.node];
+            if self.plan.choices[entry.node].is_leaf() {
+                let (first, count) = self.plan.triangles(entry.node);
+                return (node, Child::leaf(place.first_triangle + first, count));
+            }
+            next_node += 1;
+            (node, Child::node(next_node - 1))
+        };
+        self.plan.entries(0, place.slots).into_iter().map(&mut child).collect()
+    }
+}
+
+/// One subtree's nodes and leaves.
+struct Emission<'a, T> {
+    part: &'a Part<'a>,
+    place: Place,
+    nodes: &'a mut [WideNode],
+    words: &'a mut [f32],
+    ids: &'a Ids,
+    source: &'a T,
+}
+
+struct Shape {
+    leaf_count: usize,
+    depth: u32,
+}
+
+impl<T: TriangleSource> Emission<'_, T> {
+    fn run(mut self) -> Shape {
+        let plan = &self.part.plan;
+        let mut shape = Shape { leaf_count: 0, depth: self.place.level };
+        let (mut next, mut pending) = (0, Vec::new());
+        for entry in plan.entries(0, self.place.slots) {
+            self.emit(entry.node, self.place.level, &mut next, &mut pending, &mut shape);
+        }
+        while let Some((at, node, level)) = pending.pop() {
+            shape.depth = shape.depth.max(level + 1);
+            let mut children = Children::new();
+            for entry in plan.entries(node, LANES) {
+                let child = self.emit(entry.node, level + 1, &mut next, &mut pending, &mut shape);
+                children.push((plan.nodes[entry.node], child));
+            }
+            self.nodes[at].fill(children);
+        }
+        shape
+    }
+
+    /// A leaf with its triangles, or the next node, to be filled later.
+    fn emit(
+        &mut self,
+        node: usize,
+        level: u32,
+        next: &mut usize,
+        pending: &mut Vec<(usize, usize, u32)>,
+        shape: &mut Shape,
+    ) -> Child {
+        let plan = &self.part.plan;
+        if plan.choices[node].is_leaf() {
+            let (first, count) = plan.triangles(node);
+            leaves::write(self.words, first, &self.part.references[first..][..count], self.ids, self.source);
+            shape.leaf_count += 1;
+            return Child::leaf(self.place.first_triangle + first, count);
+        }
+        pending.push((*next, node, level));
+        *next += 1;
+        Child::node(self.place.first_node + *next - 1)
+    }
 }

@@ -1,6 +1,8 @@
 //! The triangles of all leaves, each leaf by coordinate: what one load brings is one coordinate of all its triangles.
 
 use super::node::Child;
+use crate::accel::build_context::slices;
+use crate::accel::reference::{Reference, TriangleSource};
 use crate::accel::{BuildContext, BuildFailure, ClosestHit};
 use crate::geometry::Triangle;
 use crate::simd::{LANES, prefetch};
@@ -19,6 +21,7 @@ pub(super) struct Leaves {
     /// second, third vertex each), then n ids as bits. More words at the end, so that the last leaf has a whole window.
     words: Vec<f32>,
     leaf_count: usize,
+    triangle_count: usize,
     ids: Ids,
 }
 
@@ -30,26 +33,20 @@ pub(super) struct Leaf<'a> {
 }
 
 impl Leaves {
-    pub(super) fn reserve(triangle_count: usize, ids: Ids, context: &BuildContext) -> Result<Self, BuildFailure> {
-        let words = context.reserve(triangle_count * WORDS + WINDOW)?;
-        Ok(Self { words, leaf_count: 0, ids })
+    /// Room for so many triangles, to be filled leaf by leaf.
+    pub(super) fn filled(triangle_count: usize, ids: Ids, context: &BuildContext) -> Result<Self, BuildFailure> {
+        let words = context.filled(triangle_count + WINDOW.div_ceil(WORDS), [0.0; WORDS])?.into_flattened();
+        Ok(Self { words, leaf_count: 0, triangle_count, ids })
     }
 
-    /// Appends a leaf and returns its first triangle's place.
-    pub(super) fn push(&mut self, triangles: &[Triangle]) -> usize {
-        let first = self.words.len() / WORDS;
-        for axis in 0..3 {
-            for corner in 0..3 {
-                self.words.extend(triangles.iter().map(|triangle| triangle.axes[axis][corner]));
-            }
-        }
-        self.words.extend(triangles.iter().map(|triangle| f32::from_bits(self.ids.joined(triangle))));
-        self.leaf_count += 1;
-        first
+    /// The words of runs of so many triangles each, and the ids to write into them.
+    pub(super) fn parts(&mut self, triangle_counts: &[usize]) -> (Vec<&mut [f32]>, &Ids) {
+        let word_counts: Vec<usize> = triangle_counts.iter().map(|count| count * WORDS).collect();
+        (slices(&mut self.words, &word_counts), &self.ids)
     }
 
-    pub(super) fn finish(&mut self) {
-        self.words.extend([0.0; WINDOW]);
+    pub(super) fn set_leaf_count(&mut self, leaf_count: usize) {
+        self.leaf_count = leaf_count;
     }
 
     #[inline(always)]
@@ -70,8 +67,17 @@ impl Leaves {
         self.leaf_count
     }
 
+    pub(super) fn triangle_count(&self) -> usize {
+        self.triangle_count
+    }
+
     pub(super) fn bytes(&self) -> usize {
         size_of_val(self.words.as_slice()) + self.ids.bytes()
+    }
+
+    #[cfg(test)]
+    pub(super) fn bits(&self) -> impl Iterator<Item = u32> {
+        self.words.iter().map(|word| word.to_bits())
     }
 
     /// The hit with its triangle's own ids.
@@ -79,6 +85,25 @@ impl Leaves {
     pub(super) fn resolve(&self, mut hit: ClosestHit) -> ClosestHit {
         (hit.triangle.geometry_id, hit.triangle.primitive_id) = self.ids.separate(hit.triangle.primitive_id);
         hit
+    }
+}
+
+/// Writes a leaf that begins with the `first`-th of the triangles that the words are for.
+pub(super) fn write(
+    words: &mut [f32],
+    first: usize,
+    references: &[Reference],
+    ids: &Ids,
+    source: &impl TriangleSource,
+) {
+    let count = references.len();
+    let words = &mut words[first * WORDS..][..count * WORDS];
+    for (lane, reference) in references.iter().enumerate() {
+        let triangle = reference.triangle(source);
+        for (row, coordinate) in triangle.axes.as_flattened().iter().enumerate() {
+            words[row * count + lane] = *coordinate;
+        }
+        words[(WORDS - 1) * count + lane] = f32::from_bits(ids.joined(reference));
     }
 }
 
@@ -132,27 +157,19 @@ pub(super) struct Ids {
 }
 
 impl Ids {
-    /// For triangles in the order of their ids.
-    pub(super) fn new(triangles: &[Triangle]) -> Self {
-        let mut starts = vec![0];
-        let mut next = 0;
-        for triangle in triangles {
-            // Geometries without a triangle to hit begin where the next one does.
-            starts.resize(triangle.geometry_id as usize + 1, next);
-            next = starts[triangle.geometry_id as usize] + triangle.primitive_id + 1;
-        }
-        starts.push(next);
-        let geometry_count = starts.len() - 1;
-        let bucket_bits = (next / geometry_count as u32).checked_ilog2().unwrap_or(0);
-        let bucket_count = (next as usize).div_ceil(1 << bucket_bits);
-        let mut ids = Self { starts, buckets: Vec::new(), bucket_bits };
+    /// `starts` has for each geometry the number of triangles in those before it, then that of all.
+    pub(super) fn new(starts: &[u32]) -> Self {
+        let (geometry_count, end) = (starts.len() - 1, starts[starts.len() - 1]);
+        let bucket_bits = (end / geometry_count as u32).checked_ilog2().unwrap_or(0);
+        let bucket_count = (end as usize).div_ceil(1 << bucket_bits);
+        let mut ids = Self { starts: starts.to_vec(), buckets: Vec::new(), bucket_bits };
         ids.buckets =
             (0..=bucket_count).map(|bucket| ids.geometry_of(bucket << bucket_bits, 0, geometry_count)).collect();
         ids
     }
 
-    fn joined(&self, triangle: &Triangle) -> u32 {
-        self.starts[triangle.geometry_id as usize] + triangle.primitive_id
+    fn joined(&self, reference: &Reference) -> u32 {
+        self.starts[reference.geometry_id() as usize] + reference.primitive_id()
     }
 
     #[inline(always)]
@@ -185,35 +202,29 @@ fn array<const N: usize>(values: &[f32], at: usize) -> &[f32; N] {
 mod tests {
     use super::*;
 
-    fn triangle(geometry_id: u32, primitive_id: u32) -> Triangle {
-        Triangle { axes: [[0.0; 3]; 3], geometry_id, primitive_id }
-    }
-
     #[test]
-    fn joined_ids_separate_again_and_keep_their_order() {
-        // Geometries of very different sizes, some without a triangle, some with gaps.
-        let counts = [3, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1000, 0, 2, 5000, 1, 0, 7];
-        let triangles: Vec<_> = (0..)
-            .zip(counts)
-            .flat_map(|(geometry, count)| (0..count).filter(|primitive| primitive % 7 != 5).map(move |p| (geometry, p)))
-            .map(|(geometry, primitive)| triangle(geometry, primitive))
-            .collect();
-        let ids = Ids::new(&triangles);
-        let mut last = None;
-        for triangle in &triangles {
-            let id = ids.joined(triangle);
-            assert_eq!(ids.separate(id), (triangle.geometry_id, triangle.primitive_id));
-            assert!(last < Some(id));
-            last = Some(id);
+    fn joined_ids_separate_again() {
+        // Geometries of very different sizes, some without a triangle.
+        let counts = [3, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1000, 0, 2, 5000, 1, 0, 7, 0];
+        let mut starts = vec![0];
+        for count in counts {
+            starts.push(starts[starts.len() - 1] + count);
+        }
+        let ids = Ids::new(&starts);
+        for (geometry, count) in (0..).zip(counts) {
+            for primitive in 0..count {
+                assert_eq!(ids.separate(starts[geometry as usize] + primitive), (geometry, primitive));
+            }
         }
     }
 
     #[test]
-    fn a_single_triangle_of_a_late_geometry_has_ids() {
-        for primitive in [0, 5, u32::MAX - 1] {
-            let lone = triangle(9, primitive);
-            let ids = Ids::new(&[lone]);
-            assert_eq!(ids.separate(ids.joined(&lone)), (9, primitive));
+    fn as_many_triangles_as_a_scene_can_have_have_ids() {
+        for starts in [vec![0, u32::MAX], vec![0, 0, u32::MAX - 1, u32::MAX]] {
+            let ids = Ids::new(&starts);
+            let last = starts.len() - 2;
+            assert_eq!(ids.separate(u32::MAX - 1), (last as u32, u32::MAX - 1 - starts[last]));
+            assert_eq!(ids.separate(0), (last as u32 / 2, 0));
         }
     }
 }

@@ -9,6 +9,8 @@ mod collapse;
 mod leaf_test;
 mod leaves;
 mod node;
+#[cfg(test)]
+mod tests;
 mod traverse;
 #[cfg(any(test, debug_assertions))]
 mod validate;
@@ -17,10 +19,11 @@ use glam::Vec4;
 use leaves::Leaves;
 use node::{Child, WideNode};
 
-use super::bvh::{BinnedSah, Bvh, Median};
+use super::bvh::{BinnedSah, build, reinsert};
+use super::reference::{Reference, TriangleSource};
 use super::stats::Shape;
 use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
-use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
+use crate::geometry::{Aabb, PrecisionMode, Ray};
 use crate::simd::Simd;
 
 pub(crate) struct WideBvh {
@@ -35,23 +38,29 @@ pub(crate) struct WideBvh {
 }
 
 impl WideBvh {
-    /// At least one triangle; `bounds` contains them all.
+    /// At least one reference; `bounds` contains them all.
     pub(crate) fn build(
-        triangles: Vec<Triangle>,
+        mut references: Vec<Reference>,
         bounds: Aabb,
         quality: Quality,
+        source: &impl TriangleSource,
         context: &BuildContext,
     ) -> Result<Self, BuildFailure> {
-        let count = triangles.len();
+        let count = references.len();
         check_count(count)?;
-        context.expect(count);
-        let ids = leaves::Ids::new(&triangles);
-        let binary = match quality {
-            Quality::Low => Bvh::build(triangles, bounds, &Median, context),
-            Quality::Medium | Quality::High => Bvh::build(triangles, bounds, &BinnedSah::FOR_WIDE_LEAVES, context),
-        }?;
-        let wide = collapse::collapse(binary, ids, context)?;
-        context.advance(count)?;
+        context.expect(2 * count);
+        let rule = match quality {
+            Quality::Low => &BinnedSah::FOR_WIDE_LEAVES_SOON,
+            Quality::Medium | Quality::High => &BinnedSah::FOR_WIDE_LEAVES,
+        };
+        let mut tree = build::build(&mut references, rule, source, context)?;
+        let mut reordered = Vec::new();
+        if quality == Quality::High {
+            tree = reinsert::reinsert(tree, &mut reordered, context)?;
+        }
+        let wide = collapse::collapse(tree, bounds, source, context)?;
+        context.release(references);
+        context.release(reordered);
         #[cfg(any(test, debug_assertions))]
         wide.validate().expect("a builder keeps the tree's invariants");
         Ok(wide)
@@ -59,6 +68,7 @@ impl WideBvh {
 
     pub(crate) fn shape(&self) -> Shape {
         Shape {
+            reference_count: self.leaves.triangle_count(),
             node_count: self.nodes.len() + self.leaves.leaf_count(),
             leaf_count: self.leaves.leaf_count(),
             depth: self.depth,
@@ -88,17 +98,5 @@ impl<S: Simd> Accel for Vectorized<'_, S> {
         then: impl FnOnce(Option<ClosestHit>) -> R,
     ) -> R {
         self.simd.vectorize(traverse::Traversal::<Q, P, _, _>::new(self.bvh, ray, then))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn more_triangles_than_references_can_name_are_refused_with_both_numbers() {
-        let limit = 1 << 28;
-        assert_eq!(check_count(limit), Ok(()));
-        assert_eq!(check_count(limit + 1), Err(BuildFailure::TooManyTriangles { count: limit + 1, limit }));
     }
 }

@@ -1,6 +1,7 @@
 //! What a traversal relies on, checked after every build in debug builds and tests.
 
 use super::WideBvh;
+use super::collapse::{LEAF_COST, NODE_COST};
 use super::node::Child;
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::geometry::Aabb;
@@ -11,8 +12,10 @@ impl WideBvh {
     pub(crate) fn validate(&self) -> Result<(), String> {
         let (mut node_seen, mut leaf_count, mut deepest) = (vec![false; self.nodes.len()], 0, 0);
         let mut pending = vec![(self.root, self.bounds, 1)];
+        let mut cost = 0.0;
         while let Some((child, bounds, level)) = pending.pop() {
             deepest = deepest.max(level);
+            cost += half_area(&bounds) * f64::from(if child.is_leaf() { LEAF_COST } else { NODE_COST });
             if child.is_leaf() {
                 leaf_count += 1;
                 self.validate_leaf(child, &bounds)?;
@@ -42,6 +45,11 @@ impl WideBvh {
         if leaf_count != self.leaves.leaf_count() {
             return Err(format!("{leaf_count} leaves are reached, {} are there", self.leaves.leaf_count()));
         }
+        // Areas in `f32` round once each.
+        let cost = cost / half_area(&self.bounds);
+        if (cost - self.sah_cost).abs() > 1e-4 * cost {
+            return Err(format!("the tree costs {cost}, {} is stated", self.sah_cost));
+        }
         if deepest != self.depth || deepest as usize > MOST_LEVELS {
             return Err(format!("{deepest} levels, {} stated, at most {MOST_LEVELS} allowed", self.depth));
         }
@@ -58,4 +66,9 @@ impl WideBvh {
         }
         Ok(())
     }
+}
+
+fn half_area(bounds: &Aabb) -> f64 {
+    let size = bounds.upper.as_dvec3() - bounds.lower.as_dvec3();
+    size.x * size.y + size.y * size.z + size.z * size.x
 }

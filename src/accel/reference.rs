@@ -1,0 +1,126 @@
+//! What a builder sorts in place of triangles: their boxes, with the ids to find them again.
+
+use glam::Vec4;
+use rayon::prelude::*;
+
+use super::{BuildContext, BuildFailure};
+use crate::geometry::{Aabb, Triangle};
+use crate::simd::Simd;
+
+/// Where the triangles are that references speak of.
+pub(crate) trait TriangleSource: Sync {
+    fn triangle(&self, geometry_id: u32, primitive_id: u32) -> Triangle;
+
+    /// For each geometry the number of triangles in those before it; then that of all.
+    fn starts(&self) -> &[u32];
+}
+
+/// A box as eight lanes: the lower corner, a lane to spare, the negated upper corner, a lane to spare. One minimum
+/// makes the union of two. 32 bytes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct Bounds8(pub(super) [f32; 8]);
+
+impl Bounds8 {
+    pub(crate) const EMPTY: Self = Self([f32::INFINITY; 8]);
+
+    #[inline(always)]
+    pub(super) fn from_corners(lower: Vec4, upper: Vec4) -> Self {
+        let ([a, b, c, d], [x, y, z, w]) = (lower.to_array(), (-upper).to_array());
+        Self([a, b, c, d, x, y, z, w])
+    }
+
+    #[inline(always)]
+    pub(crate) fn to_aabb(self) -> Aabb {
+        Aabb { lower: self.lower().truncate(), upper: -self.negated_upper().truncate() }
+    }
+
+    #[inline(always)]
+    pub(super) fn lower(&self) -> Vec4 {
+        Vec4::new(self.0[0], self.0[1], self.0[2], self.0[3])
+    }
+
+    #[inline(always)]
+    pub(super) fn negated_upper(&self) -> Vec4 {
+        Vec4::new(self.0[4], self.0[5], self.0[6], self.0[7])
+    }
+
+    /// Negative where the box is empty.
+    #[inline(always)]
+    pub(super) fn size(&self) -> Vec4 {
+        -(self.lower() + self.negated_upper())
+    }
+
+    #[inline(always)]
+    pub(super) fn doubled_centre(&self) -> Vec4 {
+        self.lower() - self.negated_upper()
+    }
+
+    pub(super) fn union<S: Simd>(mut self, simd: S, other: &Self) -> Self {
+        self.grow(simd, other);
+        self
+    }
+
+    /// What the spare lanes hold has no meaning.
+    #[inline(always)]
+    pub(crate) fn grow<S: Simd>(&mut self, simd: S, other: &Self) {
+        self.0 = simd.store(simd.min(simd.load(&self.0), simd.load(&other.0)));
+    }
+}
+
+/// A triangle's box, with the triangle's ids in the spare lanes.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(crate) struct Reference {
+    pub(super) bounds: Bounds8,
+}
+
+impl Reference {
+    #[inline(always)]
+    pub(crate) fn new(bounds: &Aabb, geometry_id: u32, primitive_id: u32) -> Self {
+        let ([a, b, c], [x, y, z]) = (bounds.lower.to_array(), bounds.upper.to_array());
+        let ids = [geometry_id, primitive_id].map(f32::from_bits);
+        Self { bounds: Bounds8([a, b, c, ids[0], -x, -y, -z, ids[1]]) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn bounds(&self) -> &Bounds8 {
+        &self.bounds
+    }
+
+    #[inline(always)]
+    pub(crate) fn geometry_id(&self) -> u32 {
+        self.bounds.0[3].to_bits()
+    }
+
+    #[inline(always)]
+    pub(crate) fn primitive_id(&self) -> u32 {
+        self.bounds.0[7].to_bits()
+    }
+
+    /// The order in which equal hits win.
+    pub(super) fn ids(&self) -> (u32, u32) {
+        (self.geometry_id(), self.primitive_id())
+    }
+
+    #[inline(always)]
+    pub(super) fn triangle(&self, source: &impl TriangleSource) -> Triangle {
+        source.triangle(self.geometry_id(), self.primitive_id())
+    }
+}
+
+/// The triangles themselves, in the order of their references.
+pub(super) fn gather(
+    source: &impl TriangleSource,
+    references: &[Reference],
+    context: &BuildContext,
+) -> Result<Vec<Triangle>, BuildFailure> {
+    let mut triangles = context.reserve(references.len())?;
+    let triangle = |reference: &Reference| reference.triangle(source);
+    if context.is_parallel() {
+        triangles.par_extend(references.par_iter().map(triangle));
+    } else {
+        triangles.extend(references.iter().map(triangle));
+    }
+    Ok(triangles)
+}

@@ -1,0 +1,137 @@
+//! What the builders make of hard input, and that it does not depend on the threads.
+
+use std::time::{Duration, Instant};
+
+use super::node::Child;
+use super::{WideBvh, check_count};
+use crate::accel::{BuildContext, BuildFailure, Quality, Reference, TriangleSource, Watch};
+use crate::geometry::{Aabb, Triangle};
+use crate::simd::Isa;
+
+/// One geometry.
+struct Soup {
+    triangles: Vec<Triangle>,
+    starts: [u32; 2],
+}
+
+impl TriangleSource for Soup {
+    fn triangle(&self, _geometry_id: u32, primitive_id: u32) -> Triangle {
+        self.triangles[primitive_id as usize]
+    }
+
+    fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+}
+
+impl Soup {
+    fn new(count: u32, vertices: impl Fn(u32) -> [[f32; 3]; 3]) -> Self {
+        let triangles = (0..count).map(|id| Triangle::new(vertices(id), 0, id)).collect();
+        Self { triangles, starts: [0, count] }
+    }
+
+    fn build(&self, quality: Quality, isa: Isa, thread_count: usize) -> WideBvh {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().expect("a few threads");
+        let watch = Watch::default();
+        let context = BuildContext::new((thread_count > 1).then_some(&pool), None, isa, &watch);
+        let references =
+            self.triangles.iter().map(|triangle| Reference::new(&triangle.bounds(), 0, triangle.primitive_id));
+        let bounds = self.triangles.iter().map(Triangle::bounds).fold(Aabb::EMPTY, Aabb::union);
+        let references = references.collect();
+        // The build validates the tree.
+        context.install(|| WideBvh::build(references, bounds, quality, self, &context)).expect("nothing limits it")
+    }
+}
+
+/// In `[0, 1)`, the same for the same seed (SplitMix64; Steele, Lea, Flood 2014).
+fn random(seed: u32) -> f32 {
+    let z = (u64::from(seed) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
+}
+
+fn small_triangle(id: u32, size: f32) -> [[f32; 3]; 3] {
+    let at = |axis: u32| random(3 * id + axis);
+    let [x, y, z] = [at(0), at(1), at(2)];
+    [[x, y, z], [x + size, y, z], [x, y + size, z + size]]
+}
+
+const QUALITIES: [Quality; 3] = [Quality::Low, Quality::Medium, Quality::High];
+
+#[test]
+fn the_bytes_are_the_same_for_any_number_of_threads_and_any_instruction_set() {
+    let soup = Soup::new(60_000, |id| small_triangle(id, if id % 100 == 0 { 0.3 } else { 0.01 }));
+    for quality in QUALITIES {
+        let expected = soup.build(quality, Isa::Scalar, 1);
+        for (isa, thread_count) in [(Isa::Auto, 1), (Isa::Sse42, 2), (Isa::Auto, 2), (Isa::Auto, 3)] {
+            let other = soup.build(quality, isa, thread_count);
+            let is_same = other.root == expected.root
+                && format!("{:?}", other.nodes) == format!("{:?}", expected.nodes)
+                && other.leaves.bits().eq(expected.leaves.bits());
+            assert!(is_same, "{quality:?} {isa:?} {thread_count} threads");
+        }
+    }
+}
+
+#[test]
+fn identical_triangles_are_stored_once_with_the_lowest_id() {
+    let soup = Soup::new(300_000, |_| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]]);
+    for quality in QUALITIES {
+        let bvh = soup.build(quality, Isa::Auto, 2);
+        assert_eq!(bvh.leaves.triangle_count(), 1);
+        assert_eq!(bvh.leaves.leaf((0, 1)).triangle(0).primitive_id, 0);
+    }
+}
+
+#[test]
+fn few_different_triangles_many_times_end_in_one_leaf_each() {
+    // Two triangles with the same box, and one elsewhere.
+    let soup = Soup::new(30_000, |id| match id % 3 {
+        0 => [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]],
+        1 => [[1.0, 1.0, 0.0], [1.0, 0.0, 0.5], [0.0, 1.0, 0.5]],
+        _ => [[5.0, 5.0, 5.0], [6.0, 5.0, 5.0], [5.0, 6.0, 5.0]],
+    });
+    assert_eq!(soup.build(Quality::Medium, Isa::Auto, 2).leaves.triangle_count(), 3);
+}
+
+#[test]
+fn hard_arrangements_build_in_time() {
+    const COUNT: u32 = 200_000;
+    let exponential = |id: u32| 2.0f32.powf(250.0 * random(id) - 125.0);
+    let arrangements: [(&str, Soup); 6] = [
+        ("plane", Soup::new(COUNT, |id| small_triangle(id, 0.01).map(|[x, y, _]| [x, y, 0.25]))),
+        ("line", Soup::new(COUNT, |id| small_triangle(id, 0.01).map(|[x, y, z]| [x, 1e-6 * y, 1e-7 * z]))),
+        (
+            "one huge",
+            Soup::new(COUNT, |id| small_triangle(id, 1e-4).map(|v| v.map(|c| if id == 0 { 1e6 * c } else { c }))),
+        ),
+        (
+            "one centre",
+            Soup::new(COUNT, |id| {
+                let size = 1.0 + id as f32;
+                [[-size, -size, -size], [size, size, -size], [-size, size, size]]
+            }),
+        ),
+        ("every magnitude", Soup::new(COUNT, |id| small_triangle(id, 0.5).map(|v| v.map(|c| c * exponential(id))))),
+        ("as large as floats", Soup::new(COUNT, |id| small_triangle(id, 0.1).map(|v| v.map(|c| 3e38 * c - 1.6e38)))),
+    ];
+    for (name, soup) in &arrangements {
+        for quality in QUALITIES {
+            let start = Instant::now();
+            let bvh = soup.build(quality, Isa::Auto, 2);
+            assert_eq!(bvh.leaves.triangle_count(), COUNT as usize, "{name} {quality:?}");
+            let seconds = start.elapsed();
+            // Two hundred times what an ordinary scene takes; unoptimised builds and loaded machines are slow.
+            assert!(seconds < Duration::from_secs(20), "{name} {quality:?} took {seconds:?}");
+        }
+    }
+}
+
+#[test]
+fn more_triangles_than_references_can_name_are_refused_with_both_numbers() {
+    let limit = Child::MOST_TRIANGLES;
+    assert_eq!(limit, 1 << 28);
+    assert_eq!(check_count(limit), Ok(()));
+    assert_eq!(check_count(limit + 1), Err(BuildFailure::TooManyTriangles { count: limit + 1, limit }));
+}
