@@ -70,13 +70,13 @@ impl<'a> BuildContext<'a> {
     /// all build the same.
     pub(crate) fn vectorize<K: SimdKernel>(&self, kernel: K) -> K::Output {
         match self.isa {
-            DetectedIsa::Scalar(simd) => simd.vectorize(kernel),
+            DetectedIsa::Scalar(simd) => simd.vectorize_build(kernel),
             #[cfg(target_arch = "x86_64")]
-            DetectedIsa::Sse42(simd) => simd.vectorize(kernel),
+            DetectedIsa::Sse42(simd) => simd.vectorize_build(kernel),
             #[cfg(target_arch = "x86_64")]
-            DetectedIsa::Avx2(simd) => simd.vectorize(kernel),
+            DetectedIsa::Avx2(simd) => simd.vectorize_build(kernel),
             #[cfg(target_arch = "x86_64")]
-            DetectedIsa::Avx512(simd) => simd.vectorize(kernel),
+            DetectedIsa::Avx512(simd) => simd.vectorize_build(kernel),
         }
     }
 

@@ -29,9 +29,9 @@ impl Ray {
     /// is not empty. A NaN anywhere makes it false.
     #[inline]
     pub fn is_valid(&self) -> bool {
-        // A finite number less itself is 0, all others make a NaN.
+        // Of what is not finite this makes a NaN.
         let (origin, direction) = (self.origin.extend(0.0), self.direction.extend(0.0));
-        let is_finite = ((origin - origin) + (direction - direction)).cmpeq(Vec4::ZERO).all();
+        let is_finite = (origin * 0.0 + direction * 0.0).cmpeq(Vec4::ZERO).all();
         is_finite & direction.cmpne(Vec4::ZERO).any() & (self.t_min <= self.t_max)
     }
 }

@@ -17,16 +17,7 @@ impl Avx2 {
 impl Simd for Avx2 {
     type F32x8 = __m256;
 
-    #[inline(always)]
-    fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
-        #[target_feature(enable = "avx2,fma")]
-        #[inline(never)]
-        fn frame<K: SimdKernel>(simd: Avx2, kernel: K) -> K::Output {
-            kernel.run(simd)
-        }
-        // SAFETY: the token proves that the CPU has both.
-        unsafe { frame(self, kernel) }
-    }
+    frames!(Avx2, "avx2,fma");
 
     #[inline(always)]
     fn splat(self, value: f32) -> __m256 {

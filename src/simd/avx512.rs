@@ -32,16 +32,7 @@ macro_rules! as_avx2 {
 impl Simd for Avx512 {
     type F32x8 = __m256;
 
-    #[inline(always)]
-    fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
-        #[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
-        #[inline(never)]
-        fn frame<K: SimdKernel>(simd: Avx512, kernel: K) -> K::Output {
-            kernel.run(simd)
-        }
-        // SAFETY: the token proves that the CPU has them all.
-        unsafe { frame(self, kernel) }
-    }
+    frames!(Avx512, "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw");
 
     as_avx2! {
         fn splat(value: f32) -> __m256;

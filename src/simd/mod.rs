@@ -6,6 +6,34 @@
 //! operations must be `#[inline(always)]`, or registers travel through memory.
 #![expect(unsafe_code, reason = "the door to std::arch: intrinsics are called here and nowhere else")]
 
+/// [`Simd::vectorize`] and [`Simd::vectorize_build`] for a token that proves that the CPU has these features.
+#[cfg(target_arch = "x86_64")]
+macro_rules! frames {
+    ($token:ty, $features:literal) => {
+        #[inline(always)]
+        fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
+            #[target_feature(enable = $features)]
+            #[inline(never)]
+            fn frame<K: SimdKernel>(simd: $token, kernel: K) -> K::Output {
+                kernel.run(simd)
+            }
+            // SAFETY: the token proves that the CPU has them.
+            unsafe { frame(self, kernel) }
+        }
+
+        #[inline(always)]
+        fn vectorize_build<K: SimdKernel>(self, kernel: K) -> K::Output {
+            #[target_feature(enable = $features)]
+            #[inline(never)]
+            fn frame<K: SimdKernel>(simd: $token, kernel: K) -> K::Output {
+                kernel.run(simd)
+            }
+            // SAFETY: as above.
+            unsafe { frame(self, kernel) }
+        }
+    };
+}
+
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -41,8 +69,11 @@ pub(crate) trait SimdKernel {
 pub(crate) trait Simd: Copy + Send + Sync {
     type F32x8: Copy;
 
-    /// Runs a kernel where the compiler may use the instruction set.
+    /// Runs a query's kernel where the compiler may use the instruction set, in a frame of its own, whose machine code
+    /// `tests/hot_loops.rs` looks at.
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output;
+    /// As [`Simd::vectorize`] for what builds, which may call whatever it likes.
+    fn vectorize_build<K: SimdKernel>(self, kernel: K) -> K::Output;
 
     fn splat(self, value: f32) -> Self::F32x8;
     fn load(self, values: &[f32; LANES]) -> Self::F32x8;
@@ -52,10 +83,9 @@ pub(crate) trait Simd: Copy + Send + Sync {
     fn mul(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     fn div(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     fn abs(self, a: Self::F32x8) -> Self::F32x8;
-    /// `a * b + c`.
-    /// One rounding or two: for bounds, where one more or less does not show.
+    /// `a * b + c`, rounded once or twice: for bounds, where a rounding more or less does not show.
     fn mul_add(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
-    /// `a * b - c`.
+    /// `a * b - c`, as [`Simd::mul_add`].
     fn mul_sub(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
     /// The lesser; `b` where either is NaN or both are equal.
     fn min(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;

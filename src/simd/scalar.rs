@@ -36,6 +36,11 @@ impl Simd for Scalar {
     }
 
     #[inline(always)]
+    fn vectorize_build<K: SimdKernel>(self, kernel: K) -> K::Output {
+        kernel.run(self)
+    }
+
+    #[inline(always)]
     fn splat(self, value: f32) -> [f32; LANES] {
         [value; LANES]
     }

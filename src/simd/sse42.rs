@@ -29,16 +29,7 @@ fn mask(bits: [__m128; 2]) -> u32 {
 impl Simd for Sse42 {
     type F32x8 = [__m128; 2];
 
-    #[inline(always)]
-    fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
-        #[target_feature(enable = "sse4.2")]
-        #[inline(never)]
-        fn frame<K: SimdKernel>(simd: Sse42, kernel: K) -> K::Output {
-            kernel.run(simd)
-        }
-        // SAFETY: the token proves that the CPU has it.
-        unsafe { frame(self, kernel) }
-    }
+    frames!(Sse42, "sse4.2");
 
     #[inline(always)]
     fn splat(self, value: f32) -> [__m128; 2] {
