@@ -19,7 +19,7 @@ mod math;
 mod scene;
 mod simd;
 
-pub use accel::{Precision, Quality, Stats, Structure};
+pub use accel::{Precision, Quality, RayCounts, Stats, Structure};
 pub use geometry::{Aabb, Hit, INVALID_ID, IndexBytes, IndexView, PositionView, Ray, TriangleView, span_bytes};
 pub use scene::{BuildError, BuildOptions, InvalidTriangles, Scene, SceneBuilder};
 pub use simd::Isa;

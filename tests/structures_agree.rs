@@ -76,8 +76,13 @@ fn every_structure_gives_the_hits_of_brute_force() {
                 let variant = BuildOptions { precision, ..variant };
                 let scene = build(&mesh, variant);
                 let single: Vec<Hit> = rays.iter().map(|ray| scene.intersect(ray)).collect();
-                let forms =
-                    [("single", single), ("batch 1", batch(&scene, &rays, 1)), ("batch 2", batch(&scene, &rays, 2))];
+                let counted: Vec<Hit> = rays.iter().map(|ray| scene.intersect_counted(ray).0).collect();
+                let forms = [
+                    ("single", single),
+                    ("counted", counted),
+                    ("batch 1", batch(&scene, &rays, 1)),
+                    ("batch 2", batch(&scene, &rays, 2)),
+                ];
                 for (form, hits) in forms {
                     for ((ray, hit), expected) in rays.iter().zip(&hits).zip(&expected) {
                         assert_eq!(
@@ -129,6 +134,30 @@ fn retrace_keeps_the_hit_at_the_closed_ends_and_loses_it_beyond() {
                 }
                 let before = Ray { t_max: hit.t.next_down(), ..ray };
                 assert!(!scene.intersect(&before).is_hit(), "{} {variant:?}: {}", mesh.name, hexadecimal(&before));
+            }
+        }
+    }
+}
+
+#[test]
+fn counts_are_within_what_the_structure_has() {
+    for mesh in meshes() {
+        let brute_force = BuildOptions { structure: Structure::BruteForce, ..BuildOptions::default() };
+        for variant in variants().into_iter().chain([brute_force]) {
+            let scene = build(&mesh, variant);
+            let stats = scene.stats();
+            let inner_node_count = stats.node_count - stats.leaf_count;
+            for ray in rays_for(&mesh, &mut Rng::new(19)) {
+                let (hit, counts) = scene.intersect_counted(ray);
+                let (nodes, primitives) = (u64::from(counts.nodes_visited), u64::from(counts.primitives_tested));
+                let what = format!("{} {variant:?}: {counts:?}; {}", mesh.name, hexadecimal(&ray));
+                assert_eq!(counts, scene.intersect_counted(ray).1, "{what}");
+                assert_eq!(counts.cells_stepped, 0, "{what}");
+                assert!(nodes <= inner_node_count && primitives <= stats.reference_count, "{what}");
+                assert!(primitives >= u64::from(hit.is_hit()), "{what}");
+                if variant.structure == Structure::BruteForce && hit.is_hit() {
+                    assert_eq!(primitives, stats.reference_count, "{what}");
+                }
             }
         }
     }

@@ -108,8 +108,25 @@ TEST_CASE("null_pointers_of_single_queries_answer_false") {
     CHECK_FALSE(gnomon_intersect(nullptr, &ray, &hit));
     CHECK_FALSE(gnomon_intersect(scene.get(), nullptr, &hit));
     CHECK_FALSE(gnomon_intersect(scene.get(), &ray, nullptr));
+    GnomonRayCounts counts;
+    CHECK_FALSE(gnomon_intersect_counted(nullptr, &ray, &hit, &counts));
+    CHECK_FALSE(gnomon_intersect_counted(scene.get(), nullptr, &hit, &counts));
     CHECK_FALSE(gnomon_occluded(nullptr, &ray));
     CHECK_FALSE(gnomon_occluded(scene.get(), nullptr));
+}
+
+TEST_CASE("null_output_of_a_counted_query_is_named_and_leaves_the_other_one_untouched") {
+    const SceneHandle scene = build_scene({unit_triangle()});
+    const GnomonRay ray = ray_down(0.25f, 0.25f);
+    GnomonHit hit{};
+    GnomonRayCounts counts{kUntouchedId, kUntouchedId, kUntouchedId};
+    hit.primitive_id = kUntouchedId;
+    CHECK_FALSE(gnomon_intersect_counted(scene.get(), &ray, nullptr, &counts));
+    check_error_names({"hit_out", "null"});
+    CHECK(counts.primitives_tested == kUntouchedId);
+    CHECK_FALSE(gnomon_intersect_counted(scene.get(), &ray, &hit, nullptr));
+    check_error_names({"counts_out", "null"});
+    CHECK(hit.primitive_id == kUntouchedId);
 }
 
 TEST_CASE("null_pointers_of_bounds_and_stats_are_named") {

@@ -96,7 +96,16 @@ GnomonHit intersect(const SceneHandle& scene, const GnomonRay& ray) {
     const bool found = gnomon_intersect(scene.get(), &ray, &hit);
     REQUIRE(found == (hit.geometry_id != GNOMON_INVALID_ID));
     REQUIRE(found == gnomon_occluded(scene.get(), &ray));
+    REQUIRE(same_bits(hit, intersect_counted(scene, ray).hit));
     return hit;
+}
+
+CountedHit intersect_counted(const SceneHandle& scene, const GnomonRay& ray) {
+    CountedHit answer;
+    std::memset(&answer, 0xA5, sizeof answer);
+    const bool found = gnomon_intersect_counted(scene.get(), &ray, &answer.hit, &answer.counts);
+    REQUIRE(found == (answer.hit.geometry_id != GNOMON_INVALID_ID));
+    return answer;
 }
 
 bool same_bits(const GnomonHit& a, const GnomonHit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }

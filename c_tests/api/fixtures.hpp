@@ -41,7 +41,13 @@ GnomonQueryOptions threads_query_options(std::uint32_t thread_count);
 /// One geometry a mesh, in order. The failure message of the library ends the test.
 SceneHandle build_scene(const std::vector<TriangleMesh>& meshes, const GnomonBuildOptions& options = default_build_options());
 
-/// What a query answers, with the fields of a miss where it misses.
+struct CountedHit {
+    GnomonHit hit;
+    GnomonRayCounts counts;
+};
+CountedHit intersect_counted(const SceneHandle& scene, const GnomonRay& ray);
+
+/// What a query answers in all its forms for one ray, with the fields of a miss where it misses.
 GnomonHit intersect(const SceneHandle& scene, const GnomonRay& ray);
 
 bool same_bits(const GnomonHit& a, const GnomonHit& b);

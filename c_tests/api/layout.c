@@ -23,6 +23,11 @@ ASSERT_OFFSET(GnomonHit, primitive_id, 24);
 ASSERT_OFFSET(GnomonHit, geometry_id, 28);
 ASSERT_OFFSET(GnomonHit, instance_id, 32);
 
+ASSERT_SIZE(GnomonRayCounts, 12);
+ASSERT_OFFSET(GnomonRayCounts, nodes_visited, 0);
+ASSERT_OFFSET(GnomonRayCounts, cells_stepped, 4);
+ASSERT_OFFSET(GnomonRayCounts, primitives_tested, 8);
+
 ASSERT_SIZE(GnomonTriangles, 56);
 ASSERT_OFFSET(GnomonTriangles, positions, 0);
 ASSERT_OFFSET(GnomonTriangles, position_stride, 8);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "api/fixtures.hpp"
+#include "harness/rng.hpp"
 
 using namespace harness;
 
@@ -18,6 +19,10 @@ void in_every_configuration(const std::vector<TriangleMesh>& meshes, Check check
         CAPTURE(configuration.name);
         check(build_scene(meshes, configuration.options));
     }
+}
+
+bool counts_are(const GnomonRayCounts& counts, std::uint32_t nodes, std::uint32_t primitives) {
+    return counts.nodes_visited == nodes && counts.cells_stepped == 0 && counts.primitives_tested == primitives;
 }
 
 bool is_miss(const GnomonHit& hit) {
@@ -159,6 +164,65 @@ TEST_CASE("invalid_rays_miss") {
         for (std::size_t i = 0; i < invalid.size(); ++i) {
             CAPTURE(i);
             CHECK(is_miss(intersect(scene, invalid[i])));
+        }
+    });
+}
+
+TEST_CASE("empty_scene_takes_nothing") {
+    in_every_configuration({}, [](const SceneHandle& scene) {
+        const CountedHit answer = intersect_counted(scene, ray_down(0.25f, 0.25f));
+        CHECK(is_miss(answer.hit));
+        CHECK(counts_are(answer.counts, 0, 0));
+    });
+}
+
+TEST_CASE("one_triangle_takes_one_test_and_no_node") {
+    in_every_configuration({unit_triangle()}, [](const SceneHandle& scene) {
+        CHECK(counts_are(intersect_counted(scene, ray_down(0.25f, 0.5f)).counts, 0, 1));
+    });
+}
+
+TEST_CASE("invalid_ray_takes_nothing") {
+    in_every_configuration({flat_grid(4)}, [](const SceneHandle& scene) {
+        const CountedHit answer = intersect_counted(scene, {{0, 0, 2}, 0, {0, 0, 0}, 10});
+        CHECK(is_miss(answer.hit));
+        CHECK(counts_are(answer.counts, 0, 0));
+    });
+}
+
+TEST_CASE("brute_force_tests_every_triangle_and_trees_few") {
+    constexpr std::uint32_t cells = 32, triangles = 2 * cells * cells;
+    Rng rng(1);
+    std::vector<GnomonRay> rays;
+    for (int i = 0; i < 200; ++i) rays.push_back(ray_down(float(rng.uniform(0, cells)), float(rng.uniform(0, cells))));
+    in_every_configuration({flat_grid(cells)}, [&rays](const SceneHandle& scene) {
+        GnomonSceneStats stats;
+        REQUIRE(gnomon_scene_stats(scene.get(), sizeof stats, &stats) == GNOMON_OK);
+        for (const GnomonRay& ray : rays) {
+            CAPTURE(ray.origin[0]);
+            CAPTURE(ray.origin[1]);
+            const auto [hit, counts] = intersect_counted(scene, ray);
+            REQUIRE(same_bits(hit, intersect(scene, ray)));
+            REQUIRE(!is_miss(hit));
+            if (stats.structure == GNOMON_STRUCTURE_BRUTE_FORCE) {
+                REQUIRE(counts_are(counts, 0, triangles));
+            } else {
+                REQUIRE((counts.nodes_visited >= 1 && counts.nodes_visited <= stats.node_count - stats.leaf_count));
+                REQUIRE((counts.primitives_tested >= 1 && counts.primitives_tested <= triangles / 10));
+            }
+        }
+    });
+}
+
+TEST_CASE("ray_that_leaves_the_scene_behind_tests_no_triangle_of_a_tree") {
+    in_every_configuration({flat_grid(8)}, [](const SceneHandle& scene) {
+        GnomonSceneStats stats;
+        REQUIRE(gnomon_scene_stats(scene.get(), sizeof stats, &stats) == GNOMON_OK);
+        const CountedHit answer = intersect_counted(scene, {{1, 1, 1}, 0, {0.25f, 0.25f, 1}, kInfinity});
+        CHECK(is_miss(answer.hit));
+        if (stats.structure != GNOMON_STRUCTURE_BRUTE_FORCE) {
+            CHECK(answer.counts.nodes_visited <= 1);
+            CHECK(answer.counts.primitives_tested == 0);
         }
     });
 }

@@ -1,6 +1,7 @@
 // One interface in front of every engine, so that each traces the same rays in the same form.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -49,6 +50,9 @@ public:
     /// before or reading them after. `threads` applies to batch alone. An invalid ray is a miss.
     virtual double intersect(CallForm form, std::span<GnomonHit> hits, std::uint32_t threads) = 0;
     virtual double occluded(CallForm form, std::span<std::uint8_t> occluded, std::uint32_t threads) = 0;
+
+    /// What finding each prepared ray's closest hit takes, one entry a ray; all 0 where an engine cannot tell.
+    virtual void count(std::span<GnomonRayCounts> counts) { std::ranges::fill(counts, GnomonRayCounts{}); }
 
     /// The engine's function behind a form, by its own name; for batch, after a first call.
     virtual std::string call_name(CallForm form, bool occlusion) const = 0;

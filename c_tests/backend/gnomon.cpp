@@ -101,6 +101,11 @@ public:
         return timed([&] { require(gnomon_occluded_n(scene, rays_.data(), rays_.size(), occluded.data(), &options)); });
     }
 
+    void count(std::span<GnomonRayCounts> counts) override {
+        GnomonHit hit;
+        for (std::size_t i = 0; i < rays_.size(); ++i) gnomon_intersect_counted(scene_.get(), &rays_[i], &hit, &counts[i]);
+    }
+
     std::string call_name(CallForm form, bool occlusion) const override {
         const std::string single = occlusion ? "gnomon_occluded" : "gnomon_intersect";
         return form == CallForm::batch ? single + "_n" : single;

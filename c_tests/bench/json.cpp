@@ -44,8 +44,14 @@ Json build_json(const SceneBench& scene, const BuildTiming& build) {
 }
 
 Json ray_set_json(const SceneBench& scene, const RaySetInfo& set) {
-    return {{"scene", scene.name},   {"view", optional_text(set.view)},   {"ray_kind", set.kind},
-            {"rays", set.ray_count}, {"batch_rays", set.batch_ray_count}, {"hit_share", number(set.hit_share)}};
+    return {{"scene", scene.name},
+            {"view", optional_text(set.view)},
+            {"ray_kind", set.kind},
+            {"rays", set.ray_count},
+            {"batch_rays", set.batch_ray_count},
+            {"hit_share", number(set.hit_share)},
+            {"nodes_per_ray", number(set.nodes_per_ray)},
+            {"triangles_per_ray", number(set.triangles_per_ray)}};
 }
 
 Json timing_json(const SceneBench& scene, const Timing& timing) {

@@ -28,10 +28,14 @@ def ratio(results, scene, view, kind, call, threads=1):
     return row and row["ratio"]
 
 
-def views(results, scene, kind, call):
+def in_views(kind, value, digits=2):
     """Outside / inside; random rays have no view."""
     shown = [None] if kind == "random" else ["outside", "inside"]
-    return " / ".join(figure(ratio(results, scene, view, kind, call)) for view in shown)
+    return " / ".join(figure(value(view), digits) for view in shown)
+
+
+def views(results, scene, kind, call):
+    return in_views(kind, lambda view: ratio(results, scene, view, kind, call))
 
 
 def scene_row(results, scene):
@@ -46,6 +50,21 @@ def scene_row(results, scene):
 def scene_table(results):
     header = ["scene", "triangles", *KINDS, *(f"batch {kind}" for kind in KINDS), "build", "bytes a triangle"]
     return table(header, [scene_row(results, scene) for scene in results["scenes"]])
+
+
+def work_cell(results, scene, kind, key):
+    def value(view):
+        row = find(results["ray_sets"], scene=scene, view=view, ray_kind=kind)
+        return row and row[key]
+    return in_views(kind, value, 1)
+
+
+def work_table(results):
+    """What finding a ray's closest hit takes, of shadow rays too."""
+    figures = [(unit, kind) for unit in ("nodes", "triangles") for kind in KINDS]
+    return table(["scene", *(f"{unit} {kind}" for unit, kind in figures)],
+                 [[scene["scene"], *(work_cell(results, scene["scene"], kind, f"{unit}_per_ray") for unit, kind in figures)]
+                  for scene in results["scenes"]])
 
 
 def bar_table(results):
@@ -67,7 +86,7 @@ def heading(results):
 
 
 def to_markdown(results):
-    tables = [scene_table(results), bar_table(results)]
+    tables = [scene_table(results), work_table(results), bar_table(results)]
     if results["growth"]:
         tables.append(growth_table(results))
     return "\n\n".join([heading(results), *tables])

@@ -27,6 +27,7 @@ struct RaySetInfo {
     std::string kind;  // "primary", "bounce", "shadow", "random"
     std::size_t ray_count = 0, batch_ray_count = 0;
     double hit_share = 0;
+    double nodes_per_ray = 0, triangles_per_ray = 0;  // what gnomon takes for the closest hit, of shadow rays too
 };
 
 /// One contender in one call form over one set of rays.

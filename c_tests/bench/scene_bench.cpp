@@ -29,6 +29,19 @@ double hit_share(Backend& backend, const RaySet& set) {
     return static_cast<double>(count) / static_cast<double>(set.rays.size());
 }
 
+/// The means over the rays of the single calls.
+void count_work(Backend& backend, const RaySet& set, RaySetInfo& info) {
+    std::vector<GnomonRayCounts> counts(set.rays.size());
+    backend.prepare(set.rays);
+    backend.count(counts);
+    for (const GnomonRayCounts& count : counts) {
+        info.nodes_per_ray += count.nodes_visited;
+        info.triangles_per_ray += count.primitives_tested;
+    }
+    info.nodes_per_ray /= static_cast<double>(counts.size());
+    info.triangles_per_ray /= static_cast<double>(counts.size());
+}
+
 }  // namespace
 
 SceneBench bench_scene(const Scene& scene, const BenchOptions& options, std::vector<std::string>& notes) {
@@ -57,6 +70,7 @@ SceneBench bench_scene(const Scene& scene, const BenchOptions& options, std::vec
         progress.set_label(scene.name + ": traces " + view + " " + set.kind + " rays");
         const std::size_t ray_set = bench.ray_sets.size();
         bench.ray_sets.push_back({view, set.kind, set.rays.size(), batch.rays.size(), hit_share(backend, set)});
+        count_work(backend, set, bench.ray_sets.back());
         append(bench.timings, trace_interleaved(contenders, single_runs(contenders), set, ray_set, options.repeats, progress));
         append(bench.timings, trace_interleaved(contenders, batch_runs(contenders, batch, options.threads), batch, ray_set,
                                                 options.repeats, progress));

@@ -16,7 +16,7 @@ MOST_DIFFERING_SHARE = 1e-3
 SHAPES = {
     "scenes": {"scene", "triangles", "generated", "not_built"},
     "builds": {"scene", "contender", "engine", "quality", "isa", "threads", "seconds", "time_ratio_to_embree", "bytes_per_triangle"},
-    "ray_sets": {"scene", "view", "ray_kind", "rays", "hit_share"},
+    "ray_sets": {"scene", "view", "ray_kind", "rays", "hit_share", "nodes_per_ray", "triangles_per_ray"},
     "speeds": {"scene", "view", "ray_kind", "contender", "call", "threads", "rays", "ns_per_ray", "ratio", "reference", "differing_answers"},
     "calls": {"scene", "engine", "least_ns", "median_ns"},
     "growth": {"engine", "triangles", "build_seconds", "bytes_per_triangle", "ns_per_ray", "step", "within_n_log_n"},
@@ -46,6 +46,7 @@ def check_figures(results):
     check({row["view"] for row in rows} == {"outside", "inside"}, "a view is missing")
     for row in rows:
         check(row["hit_share"] > 0.5, f"a view sees next to nothing: {row}")
+        check(row["nodes_per_ray"] > 1 and row["triangles_per_ray"] > 0.5, f"rays that hit take nothing: {row}")
 
 
 def check_answers(results):

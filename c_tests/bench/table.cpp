@@ -82,9 +82,13 @@ std::string ratio_table(const SceneBench& scene) {
 std::string ns_table(const SceneBench& scene) {
     TextTable table(2, header_of(scene, {"ns a ray", "call"}));
     add_lines(table, scene, [](const Timing& timing) { return figure(timing.ns_per_ray, "%.0f"); });
-    Row hits = {"rays that hit", ""};
-    for (const RaySetInfo& set : scene.ray_sets) hits.push_back(figure(100 * set.hit_share, "%.0f %%"));
-    table.add(std::move(hits));
+    Row hits = {"rays that hit", ""}, nodes = {"gnomon's nodes a ray", "closest"}, triangles = {"triangles a ray", "closest"};
+    for (const RaySetInfo& set : scene.ray_sets) {
+        hits.push_back(figure(100 * set.hit_share, "%.0f %%"));
+        nodes.push_back(figure(set.nodes_per_ray, "%.1f"));
+        triangles.push_back(figure(set.triangles_per_ray, "%.1f"));
+    }
+    for (Row* row : {&hits, &nodes, &triangles}) table.add(std::move(*row));
     Row differing = {"answers unlike Embree's", ""};
     for (std::size_t set = 0; set < scene.ray_sets.size(); ++set) {
         std::string text = "-";

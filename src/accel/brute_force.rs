@@ -2,6 +2,7 @@
 
 use super::leaf::{ClosestHit, Query, test_triangles};
 use super::stats::Shape;
+use super::tally::Tally;
 use super::{Accel, BuildContext, BuildFailure};
 use crate::geometry::{PrecisionMode, Ray, Triangle, TriangleRay};
 
@@ -33,15 +34,17 @@ impl Accel for BruteForce {
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
         ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>) -> R,
+        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
     ) -> R {
         // An empty scene answers before the ray is looked at.
         if self.triangles.is_empty() {
-            return then(None);
+            return then(None, Q::Tally::default());
         }
-        let Some(ray) = Ray::valid(ray) else { return then(None) };
+        let Some(ray) = Ray::valid(ray) else { return then(None, Q::Tally::default()) };
+        let mut tally = Q::Tally::default();
+        tally.test_primitives(self.triangles.len());
         let mut best = ClosestHit::none(&ray);
         test_triangles::<Q, P>(&self.triangles, &TriangleRay::new(&ray), ray.t_min, &mut best);
-        then(best.found())
+        then(best.found(), tally)
     }
 }

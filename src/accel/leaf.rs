@@ -1,11 +1,14 @@
 //! What queries look for, the order in which hits win, and a leaf tested triangle by triangle.
 
+use super::tally::{RayCounts, Tally};
 use crate::geometry::{INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
 
 /// What a query wants, chosen at compile time.
 pub(crate) trait Query {
     /// Whether the first hit found ends the search.
     const FIRST_HIT_ENDS: bool;
+    /// What is counted on the way.
+    type Tally: Tally;
 }
 
 /// The hit with the least `t`, and of equal ones the lowest `(geometry_id, primitive_id)`.
@@ -14,12 +17,22 @@ pub(crate) struct Closest;
 /// Whether there is a hit.
 pub(crate) struct AnyHit;
 
+/// As [`Closest`], and what finding it took.
+pub(crate) struct Counted;
+
 impl Query for Closest {
     const FIRST_HIT_ENDS: bool = false;
+    type Tally = ();
 }
 
 impl Query for AnyHit {
     const FIRST_HIT_ENDS: bool = true;
+    type Tally = ();
+}
+
+impl Query for Counted {
+    const FIRST_HIT_ENDS: bool = false;
+    type Tally = RayCounts;
 }
 
 /// The best hit so far.

@@ -7,13 +7,15 @@ mod bvh;
 mod leaf;
 mod reference;
 mod stats;
+mod tally;
 mod wide_bvh;
 
 pub(crate) use any_accel::{AnyAccel, build, choose, unsupported};
 pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
-pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Query};
+pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Counted, Query};
 pub(crate) use reference::{Bounds8, Reference, TriangleSource};
 pub use stats::{Precision, Quality, Stats, Structure};
+pub use tally::RayCounts;
 pub(crate) use wide_bvh::{Vectorized, WideBvh};
 
 use crate::geometry::{PrecisionMode, Ray};
@@ -21,13 +23,13 @@ use crate::geometry::{PrecisionMode, Ray};
 /// What a structure can be asked. The precision and the kind of query are compile-time choices, so that a kernel
 /// holds no branch on either.
 pub(crate) trait Accel {
-    /// The closest hit of a ray, or any, handed to `then`; none for a ray that is not valid.
+    /// The closest hit of a ray, or any, handed to `then` with what finding it took; none for a ray that is not valid.
     ///
     /// The ray is made, and its hit used, inside the kernel: what went through memory on the way would be loaded
     /// wider than it was just stored, and would wait for the stores.
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
         ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>) -> R,
+        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
     ) -> R;
 }

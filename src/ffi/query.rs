@@ -6,7 +6,7 @@ use super::options::GnomonQueryOptions;
 use super::pointers::{Null, output, output_slice, required, slice};
 use super::scene::GnomonScene;
 use super::status::{Failure, GnomonStatus, guard, panicked, report};
-use super::types::{GnomonHit, GnomonRay};
+use super::types::{GnomonHit, GnomonRay, GnomonRayCounts};
 
 /// The closest hit of a ray: true if there is one, and `hit_out` gets it; false for a miss, and `hit_out` says so.
 ///
@@ -33,6 +33,38 @@ pub unsafe extern "C-unwind" fn gnomon_intersect(
             hit_out.write(hit.into());
             hit.is_hit()
         }))
+    })
+}
+
+/// As `gnomon_intersect`, with the same answer to the bit, and `counts_out` gets what finding it took: for comparing
+/// structures and for finding out why rays are slow.
+///
+/// A ray that is not valid takes nothing. Any number of threads may call this on one scene. A null pointer answers false
+/// and sets `gnomon_last_error`; `hit_out` and `counts_out` then are not touched.
+///
+/// # Safety
+/// `scene` is null or from `gnomon_scene_build`; `ray` is null or readable; `hit_out` and `counts_out` are null or
+/// writable, and do not overlap.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn gnomon_intersect_counted(
+    scene: *const GnomonScene,
+    ray: *const GnomonRay,
+    hit_out: *mut GnomonHit,
+    counts_out: *mut GnomonRayCounts,
+) -> bool {
+    answer(|| {
+        // SAFETY: the caller's promise.
+        let scene = unsafe { required(scene, "scene") }?;
+        // SAFETY: the caller's promise.
+        let ray = unsafe { required(ray, "ray") }?;
+        // SAFETY: the caller's promise.
+        let hit_out = unsafe { output(hit_out, "hit_out") }?;
+        // SAFETY: the caller's promise.
+        let counts_out = unsafe { output(counts_out, "counts_out") }?;
+        let (hit, counts) = scene.0.intersect_counted(ray);
+        hit_out.write(hit.into());
+        counts_out.write(counts.into());
+        Ok(hit.is_hit())
     })
 }
 

@@ -4,6 +4,7 @@ use std::ffi::c_void;
 
 use glam::Vec3;
 
+use crate::accel::RayCounts;
 use crate::geometry::{Hit, Ray};
 
 /// The id of what is not there: a miss's geometry and primitive, the instance where none is involved.
@@ -51,6 +52,22 @@ pub struct GnomonHit {
     pub geometry_id: u32,
     /// `GNOMON_INVALID_ID` where no instance is involved.
     pub instance_id: u32,
+}
+
+/// What a query did to find its answer. 12 bytes.
+///
+/// The same in every run, so that structures can be compared where clocks are noisy. Instruction sets round the bounds
+/// of boxes and hits differently, so now and then a ray takes a step more or less. A number that does not fit stays
+/// at `UINT32_MAX`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct GnomonRayCounts {
+    /// Nodes whose children's boxes were tested, in one step or one by one; a leaf is none.
+    pub nodes_visited: u32,
+    /// Cells that the ray was led through; 0 in structures without cells.
+    pub cells_stepped: u32,
+    /// Triangles of the leaves that were tested, each for itself or eight at once; without a structure, all.
+    pub primitives_tested: u32,
 }
 
 /// A triangle mesh in the caller's memory, which `gnomon_scene_builder_add_triangles` copies.
@@ -145,8 +162,19 @@ impl From<Hit> for GnomonHit {
     }
 }
 
+impl From<RayCounts> for GnomonRayCounts {
+    fn from(counts: RayCounts) -> Self {
+        Self {
+            nodes_visited: counts.nodes_visited,
+            cells_stepped: counts.cells_stepped,
+            primitives_tested: counts.primitives_tested,
+        }
+    }
+}
+
 const _: () = assert!(size_of::<GnomonRay>() == 32);
 const _: () = assert!(size_of::<GnomonHit>() == 36);
+const _: () = assert!(size_of::<GnomonRayCounts>() == 12);
 const _: () = assert!(std::mem::offset_of!(GnomonRay, direction) == 16);
 const _: () = assert!(std::mem::offset_of!(GnomonHit, primitive_id) == 24);
 #[cfg(target_pointer_width = "64")]

@@ -1,7 +1,7 @@
 //! Queries: the one place where a scene's structure and precision are looked at, once a call.
 
 use super::Scene;
-use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Precision, Vectorized, WideBvh};
+use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Counted, Precision, RayCounts, Vectorized, WideBvh};
 use crate::geometry::{Accurate, Fast, Hit, INVALID_ID, PrecisionMode, Ray};
 use crate::simd::DetectedIsa;
 
@@ -23,6 +23,12 @@ impl Scene {
     #[inline]
     pub fn intersect_then<R>(&self, ray: impl Into<Ray>, then: impl FnOnce(Hit) -> R) -> R {
         self.dispatch(Single { question: ClosestOf, ray, then })
+    }
+
+    /// As [`Scene::intersect`], and what finding the hit took.
+    #[inline]
+    pub fn intersect_counted(&self, ray: impl Into<Ray>) -> (Hit, RayCounts) {
+        self.dispatch(Single { question: CountedClosestOf, ray, then: |answer| answer })
     }
 
     /// Whether the ray hits anything.
@@ -84,6 +90,10 @@ pub(super) trait Question: Copy + Sync {
 #[derive(Clone, Copy)]
 pub(super) struct ClosestOf;
 
+/// What does it hit first, and what does it take to find that?
+#[derive(Clone, Copy)]
+struct CountedClosestOf;
+
 /// Does it hit anything?
 #[derive(Clone, Copy)]
 pub(super) struct Occlusion;
@@ -93,7 +103,21 @@ impl Question for ClosestOf {
 
     #[inline(always)]
     fn answer<A: Accel, P: PrecisionMode, R>(self, accel: &A, ray: impl Into<Ray>, then: impl FnOnce(Hit) -> R) -> R {
-        accel.query::<Closest, P, R>(ray, |found| then(found.map_or(Hit::MISS, complete)))
+        accel.query::<Closest, P, R>(ray, |found, ()| then(found.map_or(Hit::MISS, complete)))
+    }
+}
+
+impl Question for CountedClosestOf {
+    type Answer = (Hit, RayCounts);
+
+    #[inline(always)]
+    fn answer<A: Accel, P: PrecisionMode, R>(
+        self,
+        accel: &A,
+        ray: impl Into<Ray>,
+        then: impl FnOnce((Hit, RayCounts)) -> R,
+    ) -> R {
+        accel.query::<Counted, P, R>(ray, |found, counts| then((found.map_or(Hit::MISS, complete), counts)))
     }
 }
 
@@ -102,7 +126,7 @@ impl Question for Occlusion {
 
     #[inline(always)]
     fn answer<A: Accel, P: PrecisionMode, R>(self, accel: &A, ray: impl Into<Ray>, then: impl FnOnce(bool) -> R) -> R {
-        accel.query::<AnyHit, P, R>(ray, |found| then(found.is_some()))
+        accel.query::<AnyHit, P, R>(ray, |found, ()| then(found.is_some()))
     }
 }
 

@@ -80,8 +80,9 @@ impl Accel for Bvh {
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
         ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>) -> R,
+        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
     ) -> R {
-        then(Ray::valid(ray).and_then(|ray| self.traverse::<Q, P>(&ray)))
+        let mut tally = Q::Tally::default();
+        then(Ray::valid(ray).and_then(|ray| self.traverse::<Q, P>(&ray, &mut tally)), tally)
     }
 }

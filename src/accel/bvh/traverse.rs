@@ -5,6 +5,7 @@ use arrayvec::ArrayVec;
 use super::Bvh;
 use super::node::{MOST_LEVELS, Node};
 use crate::accel::leaf::{ClosestHit, Query, test_triangles};
+use crate::accel::tally::Tally;
 use crate::geometry::{PrecisionMode, Ray, SlabRay, Triangle, TriangleRay};
 
 /// A node that waits, and where the ray enters it.
@@ -23,7 +24,7 @@ impl Pending {
 
 impl Bvh {
     #[inline(always)]
-    pub(super) fn traverse<Q: Query, P: PrecisionMode>(&self, ray: &Ray) -> Option<ClosestHit> {
+    pub(super) fn traverse<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit> {
         let slabs = SlabRay::new(ray, &self.bounds);
         let triangle_ray = TriangleRay::new(ray);
         let t_min = ray.t_min * slabs.time_scale;
@@ -35,11 +36,13 @@ impl Bvh {
         loop {
             if node.count != 0 {
                 let triangles = &self.triangles[node.first as usize..][..node.count as usize];
+                tally.test_primitives(triangles.len());
                 if test_leaf::<Q, P>(triangles, &triangle_ray, ray.t_min, &mut best) {
                     break;
                 }
                 t_max = best.t * slabs.time_scale;
             } else {
+                tally.visit_node();
                 let [left, right] = &self.pairs[node.first as usize].children;
                 let enter_left = slabs.enter(&left.planes, t_min, t_max);
                 let enter_right = slabs.enter(&right.planes, t_min, t_max);

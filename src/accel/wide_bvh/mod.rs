@@ -95,7 +95,7 @@ impl<S: Simd> Accel for Vectorized<'_, S> {
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
         ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>) -> R,
+        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
     ) -> R {
         self.simd.vectorize(traverse::Traversal::<Q, P, _, _>::new(self.bvh, ray, then))
     }

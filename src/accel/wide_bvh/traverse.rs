@@ -10,6 +10,7 @@ use super::leaf_test::{Best, LeafTest};
 use super::node::Child;
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::accel::leaf::{ClosestHit, Query};
+use crate::accel::tally::Tally;
 use crate::geometry::{Interval, ObliqueSlabs, PrecisionMode, Ray, SlabRay, TriangleRay};
 use crate::simd::{LANES, Simd, SimdKernel, prefetch};
 
@@ -47,7 +48,7 @@ where
     Q: Query,
     P: PrecisionMode,
     I: Into<Ray>,
-    T: FnOnce(Option<ClosestHit>) -> R,
+    T: FnOnce(Option<ClosestHit>, Q::Tally) -> R,
 {
     type Output = R;
 
@@ -57,8 +58,9 @@ where
         let ray = ray.into();
         match ObliqueSlabs::new(&ray, &bvh.corners) {
             Some(slabs) => {
-                let found = traverse::<Q, P, S, _>(simd, bvh, &ray, Oblique::new(simd, &slabs));
-                finish::<Q, R>(bvh, found, then)
+                let mut tally = Q::Tally::default();
+                let found = traverse::<Q, P, S, _>(simd, bvh, &ray, Oblique::new(simd, &slabs), &mut tally);
+                finish::<Q, R>(bvh, found, |found| then(found, tally))
             }
             // In a frame of its own, so that ordinary rays do not pay for its registers.
             None => simd.vectorize(AlongPlanes(Traversal { bvh, ray, then, choices })),
@@ -69,17 +71,21 @@ where
 /// A ray that runs along a plane, or of unusual length, or not valid.
 struct AlongPlanes<'a, Q, P, T>(Traversal<'a, Q, P, Ray, T>);
 
-impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>) -> R> SimdKernel for AlongPlanes<'_, Q, P, T> {
+impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R> SimdKernel
+    for AlongPlanes<'_, Q, P, T>
+{
     type Output = R;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> R {
         let Traversal { bvh, ray, then, .. } = self.0;
         if !ray.is_valid() {
-            return then(None);
+            return then(None, Q::Tally::default());
         }
         let boxes = Plain::new(simd, &SlabRay::new(&ray, &bvh.bounds));
-        finish::<Q, R>(bvh, traverse::<Q, P, S, _>(simd, bvh, &ray, boxes), then)
+        let mut tally = Q::Tally::default();
+        let found = traverse::<Q, P, S, _>(simd, bvh, &ray, boxes, &mut tally);
+        finish::<Q, R>(bvh, found, |found| then(found, tally))
     }
 }
 
@@ -97,6 +103,7 @@ fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
     bvh: &WideBvh,
     ray: &Ray,
     boxes: B,
+    tally: &mut Q::Tally,
 ) -> Option<ClosestHit> {
     let triangle_ray = TriangleRay::new(ray);
     let triangles = LeafTest::new(simd, bvh, &triangle_ray, Interval { t_min: ray.t_min, t_max: ray.t_max });
@@ -108,11 +115,13 @@ fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
     let mut child = bvh.root;
     loop {
         if child.is_leaf() {
+            tally.test_primitives(child.triangles().1);
             if triangles.test::<Q, P>(simd, child, &mut best) {
                 return Some(ClosestHit::UNSPECIFIED);
             }
             t_max = boxes.scale_time(best.high);
         } else {
+            tally.visit_node();
             let node = &bvh.nodes[child.node_index()];
             let (mut hits, enter) = boxes.test(simd, node, t_min, t_max);
             if hits != 0 {
