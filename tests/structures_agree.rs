@@ -58,6 +58,87 @@ fn batch(scene: &Scene, rays: &[Ray], thread_count: u32) -> Vec<Hit> {
     hits.into_iter().map(|hit| unsafe { hit.assume_init() }).collect()
 }
 
+fn batch_occluded(scene: &Scene, rays: &[Ray], thread_count: u32) -> Vec<bool> {
+    let mut occluded = vec![MaybeUninit::new(false); rays.len()];
+    scene.occluded_n(rays, &mut occluded, thread_count);
+    #[expect(unsafe_code, reason = "reading back an array that was initialised when it was made")]
+    // SAFETY: each element was made with `MaybeUninit::new`.
+    occluded.into_iter().map(|is_hit| unsafe { is_hit.assume_init() }).collect()
+}
+
+/// What a batch takes apart: rays at random, rays of a camera in rows, which go together, and among both now and then
+/// an invalid ray, one along an axis, and one whose interval ends before or at its hit.
+fn mixed_rays(mesh: &Mesh, scene: &Scene, rng: &mut Rng) -> Vec<Ray> {
+    let mut rays = rays_for(mesh, rng);
+    let (lower, upper) = (scene.bounds().lower, scene.bounds().upper);
+    let (centre, half) = (lower * 0.5 + upper * 0.5, upper * 0.5 - lower * 0.5);
+    let eye = centre + half.max_element() * Vec3::new(1.9, 1.4, 1.1);
+    let forward = centre - eye;
+    let (right, up) = (forward.cross(Vec3::Y), forward.cross(Vec3::Y).cross(forward));
+    for row in 0..8 {
+        let height = (row as f32 / 4.0 - 1.0) * 0.3;
+        for column in 0..200 {
+            let aside = (column as f32 / 100.0 - 1.0) * 0.3;
+            let direction = forward.normalize() + right.normalize() * aside + up.normalize() * height;
+            rays.push(Ray { origin: eye, t_min: 0.0, direction, t_max: f32::INFINITY });
+        }
+    }
+    let nan = f32::NAN;
+    for index in (0..rays.len()).step_by(97) {
+        let ray = &mut rays[index];
+        match index % 7 {
+            0 => ray.direction = Vec3::ZERO,
+            1 => ray.origin.y = nan,
+            2 => (ray.t_min, ray.t_max) = (1.0, 0.5),
+            3 => ray.t_max = nan,
+            4 => ray.direction *= Vec3::new(0.0, 1.0, -0.0),
+            5 => ray.t_max = scene.intersect(ray).t.next_down(),
+            _ => ray.t_max = scene.intersect(ray).t,
+        }
+    }
+    rays
+}
+
+#[test]
+fn batches_of_every_length_give_the_hits_of_single_calls() {
+    const LENGTHS: [usize; 12] = [0, 1, 2, 31, 32, 33, 63, 64, 65, 127, 255, 1000];
+
+    for mesh in meshes() {
+        for precision in [Precision::Fast, Precision::Accurate] {
+            for variant in variants() {
+                let scene = build(&mesh, BuildOptions { precision, ..variant });
+                let mut rng = Rng::new(19);
+                let rays = mixed_rays(&mesh, &scene, &mut rng);
+                let single: Vec<Hit> = rays.iter().map(|ray| scene.intersect(ray)).collect();
+                for length in LENGTHS.into_iter().chain([rays.len()]) {
+                    let first = rng.below(rays.len() - length + 1);
+                    let rays = &rays[first..][..length];
+                    let thread_count = 1 + rng.below(2) as u32;
+                    let hits = batch(&scene, rays, thread_count);
+                    let occluded = batch_occluded(&scene, rays, thread_count);
+                    for (index, expected) in single[first..][..length].iter().enumerate() {
+                        let ray = hexadecimal(&rays[index]);
+                        let hit = &hits[index];
+                        assert_eq!(
+                            bits(hit),
+                            bits(expected),
+                            "{} {variant:?} {precision:?}, {index} of {length} from {first}: {hit:?} instead of \
+                             {expected:?}; {ray}",
+                            mesh.name
+                        );
+                        assert_eq!(
+                            occluded[index],
+                            expected.is_hit(),
+                            "{} {variant:?} {precision:?}: {ray}",
+                            mesh.name
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn every_structure_gives_the_hits_of_brute_force() {
     for mesh in meshes() {

@@ -32,4 +32,23 @@ pub(crate) trait Accel {
         ray: impl Into<Ray>,
         then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
     ) -> R;
+
+    /// As [`Accel::query`] for the rays of each run, with the same answers in the same places.
+    fn query_runs<'r, Q, P, R, T>(
+        &self,
+        mut next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+        answer: impl Fn(&mut T, Option<ClosestHit>),
+    ) where
+        Q: Query,
+        P: PrecisionMode,
+        for<'a> &'a R: Into<Ray>,
+        R: 'r,
+        T: 'r,
+    {
+        while let Some((rays, places)) = next_run() {
+            for (ray, place) in rays.iter().zip(places) {
+                self.query::<Q, P, ()>(ray, |found, _| answer(place, found));
+            }
+        }
+    }
 }

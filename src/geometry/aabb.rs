@@ -34,7 +34,7 @@ impl Aabb {
     }
 
     /// The largest distance along an axis from `point` to any point of the box. `-inf` or NaN for the empty box.
-    fn reach_from(&self, point: Vec3) -> f32 {
+    pub(crate) fn reach_from(&self, point: Vec3) -> f32 {
         (self.upper - point).max(point - self.lower).max_element()
     }
 }

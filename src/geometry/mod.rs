@@ -2,6 +2,7 @@
 
 mod aabb;
 mod evaluation;
+mod evaluation_lanes;
 mod mesh_view;
 mod ray;
 mod triangle;
@@ -9,6 +10,7 @@ mod triangle_hit;
 
 pub use aabb::Aabb;
 pub(crate) use aabb::{ObliqueSlabs, SlabRay};
+pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};
 pub use mesh_view::{IndexBytes, IndexView, PositionView, TriangleView, span_bytes};
 pub use ray::{Hit, INVALID_ID, Ray};
 pub(crate) use triangle::Triangle;

@@ -71,6 +71,9 @@ impl Interval {
 
 /// How `t`, `u` and `v` of an accepted triangle are computed.
 pub(crate) trait PrecisionMode {
+    /// Whether hits can be evaluated several at once.
+    const HAS_LANES: bool;
+
     /// A hit outside the interval may be given or not: the caller looks.
     fn evaluate(
         ray: &TriangleRay,
@@ -194,6 +197,8 @@ impl TriangleRay {
 }
 
 impl PrecisionMode for Fast {
+    const HAS_LANES: bool = false;
+
     fn evaluate(
         ray: &TriangleRay,
         triangle: &Triangle,
@@ -210,6 +215,8 @@ impl PrecisionMode for Fast {
 }
 
 impl PrecisionMode for Accurate {
+    const HAS_LANES: bool = true;
+
     fn evaluate(
         ray: &TriangleRay,
         triangle: &Triangle,

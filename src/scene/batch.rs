@@ -51,14 +51,15 @@ where
         /// Enough rays that taking the next run does not show, few enough that threads end together.
         const RUN: usize = 256;
 
-        let trace = |rays: &[R], answers: &mut [MaybeUninit<T>]| {
-            for (ray, answer) in rays.iter().zip(answers) {
-                self.question.answer::<A, P, _>(accel, ray, |found| answer.write(found.into()));
-            }
-        };
         let run_count = self.rays.len().div_ceil(RUN);
         let pool = if self.thread_count == 1 || run_count <= 1 { None } else { threads::shared_pool() };
-        let Some(pool) = pool else { return trace(self.rays, self.answers) };
+        let answer = |place: &mut MaybeUninit<T>, found: Q::Answer| {
+            place.write(found.into());
+        };
+        let Some(pool) = pool else {
+            let mut run = Some((self.rays, self.answers));
+            return self.question.answer_runs::<A, P, R, _>(accel, || run.take(), answer);
+        };
 
         let worker_count = match self.thread_count {
             0 => pool.current_num_threads(),
@@ -68,11 +69,7 @@ where
         let next_run = || runs.lock().expect("taking a run does not panic").next();
         pool.scope(|scope| {
             for _ in 0..worker_count {
-                scope.spawn(|_| {
-                    while let Some((rays, answers)) = next_run() {
-                        trace(rays, answers);
-                    }
-                });
+                scope.spawn(|_| self.question.answer_runs::<A, P, R, _>(accel, next_run, answer));
             }
         });
     }

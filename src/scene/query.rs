@@ -84,6 +84,24 @@ pub(super) trait Question: Copy + Sync {
         ray: impl Into<Ray>,
         then: impl FnOnce(Self::Answer) -> R,
     ) -> R;
+
+    /// See [`Accel::query_runs`].
+    fn answer_runs<'r, A: Accel, P: PrecisionMode, R, T>(
+        self,
+        accel: &A,
+        mut next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+        answer: impl Fn(&mut T, Self::Answer),
+    ) where
+        for<'a> &'a R: Into<Ray>,
+        R: 'r,
+        T: 'r,
+    {
+        while let Some((rays, places)) = next_run() {
+            for (ray, place) in rays.iter().zip(places) {
+                self.answer::<A, P, ()>(accel, ray, |found| answer(place, found));
+            }
+        }
+    }
 }
 
 /// What does it hit first?
@@ -104,6 +122,20 @@ impl Question for ClosestOf {
     #[inline(always)]
     fn answer<A: Accel, P: PrecisionMode, R>(self, accel: &A, ray: impl Into<Ray>, then: impl FnOnce(Hit) -> R) -> R {
         accel.query::<Closest, P, R>(ray, |found, ()| then(found.map_or(Hit::MISS, complete)))
+    }
+
+    #[inline(always)]
+    fn answer_runs<'r, A: Accel, P: PrecisionMode, R, T>(
+        self,
+        accel: &A,
+        next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+        answer: impl Fn(&mut T, Hit),
+    ) where
+        for<'a> &'a R: Into<Ray>,
+        R: 'r,
+        T: 'r,
+    {
+        accel.query_runs::<Closest, P, R, T>(next_run, |place, found| answer(place, found.map_or(Hit::MISS, complete)));
     }
 }
 
@@ -127,6 +159,20 @@ impl Question for Occlusion {
     #[inline(always)]
     fn answer<A: Accel, P: PrecisionMode, R>(self, accel: &A, ray: impl Into<Ray>, then: impl FnOnce(bool) -> R) -> R {
         accel.query::<AnyHit, P, R>(ray, |found, ()| then(found.is_some()))
+    }
+
+    #[inline(always)]
+    fn answer_runs<'r, A: Accel, P: PrecisionMode, R, T>(
+        self,
+        accel: &A,
+        next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+        answer: impl Fn(&mut T, bool),
+    ) where
+        for<'a> &'a R: Into<Ray>,
+        R: 'r,
+        T: 'r,
+    {
+        accel.query_runs::<AnyHit, P, R, T>(next_run, |place, found| answer(place, found.is_some()));
     }
 }
 

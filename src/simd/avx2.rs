@@ -4,20 +4,26 @@ use std::arch::x86_64::*;
 
 use super::{LANES, Simd, SimdKernel};
 
-/// Proof that the CPU has AVX2 and FMA.
+/// Proof that the CPU has AVX2 and FMA, and the operations on bits that came with them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2(());
 
 impl Avx2 {
     pub(crate) fn detect() -> Option<Self> {
-        (is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")).then_some(Self(()))
+        let is_there = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt")
+            && is_x86_feature_detected!("popcnt");
+        is_there.then_some(Self(()))
     }
 }
 
 impl Simd for Avx2 {
     type F32x8 = __m256;
 
-    frames!(Avx2, "avx2,fma");
+    frames!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 
     #[inline(always)]
     fn splat(self, value: f32) -> __m256 {
@@ -103,5 +109,80 @@ impl Simd for Avx2 {
     fn max(self, a: __m256, b: __m256) -> __m256 {
         // SAFETY: the token proves that the CPU has AVX.
         unsafe { _mm256_max_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn and(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_and_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn or(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_or_ps(a, b) }
+    }
+
+    /// Each half by the optimal network for four, one of them ascending, then a bitonic merge, so that lanes change
+    /// halves once.
+    #[inline(always)]
+    fn sort_descending(self, a: __m256) -> __m256 {
+        /// Compares neighbours at the distance of a shuffle; a bit says that its lane keeps the greater.
+        macro_rules! exchange {
+            ($a:expr, $partner:expr, $greater:literal) => {{
+                let (a, partner) = ($a, $partner);
+                _mm256_blend_epi32::<$greater>(_mm256_min_epi32(a, partner), _mm256_max_epi32(a, partner))
+            }};
+        }
+        // SAFETY: the token proves that the CPU has AVX2.
+        unsafe {
+            let a = _mm256_castps_si256(a);
+            let a = exchange!(a, _mm256_shuffle_epi32::<0b01_00_11_10>(a), 0b1100_0011);
+            let a = exchange!(a, _mm256_shuffle_epi32::<0b10_11_00_01>(a), 0b1010_0101);
+            let a = exchange!(a, _mm256_shuffle_epi32::<0b11_01_10_00>(a), 0b0100_0010);
+            let a = exchange!(a, _mm256_permute2x128_si256::<0x01>(a, a), 0b0000_1111);
+            let a = exchange!(a, _mm256_shuffle_epi32::<0b01_00_11_10>(a), 0b0011_0011);
+            let a = exchange!(a, _mm256_shuffle_epi32::<0b10_11_00_01>(a), 0b0101_0101);
+            _mm256_castsi256_ps(a)
+        }
+    }
+
+    #[inline(always)]
+    fn compress_lanes(self, a: __m256, mask: u32) -> __m256 {
+        let lanes = &super::COMPRESSED[mask as usize & 0xFF];
+        // SAFETY: the token proves that the CPU has AVX2; the table has eight bytes a mask.
+        unsafe { _mm256_permutevar8x32_ps(a, _mm256_cvtepu8_epi32(_mm_loadl_epi64(lanes.as_ptr().cast()))) }
+    }
+
+    #[inline(always)]
+    fn order_two(self, a: __m256) -> __m256 {
+        // SAFETY: the token proves that the CPU has AVX2.
+        unsafe {
+            let a = _mm256_castps_si256(a);
+            let swapped = _mm256_shuffle_epi32::<0b11_10_00_01>(a);
+            let (least, greatest) = (_mm256_min_epi32(a, swapped), _mm256_max_epi32(a, swapped));
+            _mm256_castsi256_ps(_mm256_blend_epi32::<0b0000_0001>(least, greatest))
+        }
+    }
+
+    #[inline(always)]
+    fn gather(self, values: &[u32; LANES], by: __m256) -> [u32; LANES] {
+        let mut gathered = [0; LANES];
+        // SAFETY: the token proves that the CPU has AVX2; eight values are there, and room for eight.
+        unsafe {
+            let values = _mm256_loadu_si256(values.as_ptr().cast());
+            let lanes = _mm256_permutevar8x32_epi32(values, _mm256_castps_si256(by));
+            _mm256_storeu_si256(gathered.as_mut_ptr().cast(), lanes);
+        }
+        gathered
+    }
+
+    #[inline(always)]
+    fn compress(self, values: &[u32; LANES], mask: u32) -> [u32; LANES] {
+        let lanes = &super::COMPRESSED[mask as usize & 0xFF];
+        // SAFETY: the token proves that the CPU has AVX2; the table has eight bytes a mask.
+        let by = unsafe { _mm256_cvtepu8_epi32(_mm_loadl_epi64(lanes.as_ptr().cast())) };
+        // SAFETY: the token proves that the CPU has AVX.
+        self.gather(values, unsafe { _mm256_castsi256_ps(by) })
     }
 }

@@ -32,7 +32,7 @@ macro_rules! as_avx2 {
 impl Simd for Avx512 {
     type F32x8 = __m256;
 
-    frames!(Avx512, "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw");
+    frames!(Avx512, "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw");
 
     as_avx2! {
         fn splat(value: f32) -> __m256;
@@ -43,6 +43,8 @@ impl Simd for Avx512 {
         fn mul(a: __m256, b: __m256) -> __m256;
         fn div(a: __m256, b: __m256) -> __m256;
         fn abs(a: __m256) -> __m256;
+        fn and(a: __m256, b: __m256) -> __m256;
+        fn or(a: __m256, b: __m256) -> __m256;
         fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256;
         fn mul_sub(a: __m256, b: __m256, c: __m256) -> __m256;
         fn min(a: __m256, b: __m256) -> __m256;

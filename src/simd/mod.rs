@@ -95,6 +95,87 @@ pub(crate) trait Simd: Copy + Send + Sync {
     fn less(self, a: Self::F32x8, b: Self::F32x8) -> u32;
     /// `a <= b`; not where either is NaN.
     fn less_or_equal(self, a: Self::F32x8, b: Self::F32x8) -> u32;
+
+    /// Of the bits.
+    fn and(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// Of the bits.
+    fn or(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+
+    /// Descending, the bits taken for signed integers: floats that are not negative in their order, negative ones
+    /// after them in any.
+    #[inline(always)]
+    fn sort_descending(self, a: Self::F32x8) -> Self::F32x8 {
+        let mut bits = self.store(a).map(|value| value.to_bits() as i32);
+        for end in 1..LANES {
+            for at in (0..end).rev() {
+                let (upper, lower) = (bits[at], bits[at + 1]);
+                (bits[at], bits[at + 1]) = (upper.max(lower), upper.min(lower));
+            }
+        }
+        self.load(&bits.map(|bits| f32::from_bits(bits as u32)))
+    }
+
+    /// The value that the low three bits of each lane name.
+    #[inline(always)]
+    fn gather(self, values: &[u32; LANES], by: Self::F32x8) -> [u32; LANES] {
+        self.store(by).map(|lane| values[lane.to_bits() as usize % LANES])
+    }
+
+    /// The lanes whose bit is set in the mask, in their order, then the last of them again.
+    #[inline(always)]
+    fn compress_lanes(self, a: Self::F32x8, mask: u32) -> Self::F32x8 {
+        let values = self.store(a);
+        self.load(&COMPRESSED[mask as usize & 0xFF].map(|lane| values[usize::from(lane) % LANES]))
+    }
+
+    /// The first two lanes in descending order, as by [`Simd::sort_descending`].
+    #[inline(always)]
+    fn order_two(self, a: Self::F32x8) -> Self::F32x8 {
+        let mut values = self.store(a);
+        if (values[0].to_bits() as i32) < values[1].to_bits() as i32 {
+            values.swap(0, 1);
+        }
+        self.load(&values)
+    }
+
+    /// The values whose bit is set in the mask, in their order; what follows them has no meaning.
+    #[inline(always)]
+    fn compress(self, values: &[u32; LANES], mask: u32) -> [u32; LANES] {
+        COMPRESSED[mask as usize & 0xFF].map(|lane| values[usize::from(lane) % LANES])
+    }
+}
+
+/// For each mask the lanes whose bit is set, in their order, then the last of them again.
+const COMPRESSED: [[u8; LANES]; 1 << LANES] = {
+    let mut table = [[0; LANES]; 1 << LANES];
+    let mut mask = 0;
+    while mask < table.len() {
+        let (mut lane, mut count) = (0, 0);
+        while lane < LANES {
+            if mask >> lane & 1 == 1 {
+                table[mask][count] = lane as u8;
+                count += 1;
+            }
+            lane += 1;
+        }
+        while 0 < count && count < LANES {
+            table[mask][count] = table[mask][count - 1];
+            count += 1;
+        }
+        mask += 1;
+    }
+    table
+};
+
+/// Asks for cache lines ahead of their use, from the one at an address on.
+#[inline(always)]
+pub(crate) fn prefetch_lines<const COUNT: usize>(address: *const u8) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..COUNT {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a prefetch has no effect that a program can see, wherever it points.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast::<i8>().wrapping_add(64 * line)) };
+    }
 }
 
 /// Asks for a value's cache lines ahead of its use.

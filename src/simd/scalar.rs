@@ -109,4 +109,14 @@ impl Simd for Scalar {
     fn less_or_equal(self, a: [f32; LANES], b: [f32; LANES]) -> u32 {
         mask(a, b, |a, b| a <= b)
     }
+
+    #[inline(always)]
+    fn and(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
+        lanewise(a, b, |a, b| f32::from_bits(a.to_bits() & b.to_bits()))
+    }
+
+    #[inline(always)]
+    fn or(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
+        lanewise(a, b, |a, b| f32::from_bits(a.to_bits() | b.to_bits()))
+    }
 }

@@ -119,4 +119,16 @@ impl Simd for Sse42 {
         // SAFETY: SSE is part of x86-64.
         halves(a, b, |a, b| unsafe { _mm_max_ps(a, b) })
     }
+
+    #[inline(always)]
+    fn and(self, a: [__m128; 2], b: [__m128; 2]) -> [__m128; 2] {
+        // SAFETY: SSE is part of x86-64.
+        halves(a, b, |a, b| unsafe { _mm_and_ps(a, b) })
+    }
+
+    #[inline(always)]
+    fn or(self, a: [__m128; 2], b: [__m128; 2]) -> [__m128; 2] {
+        // SAFETY: SSE is part of x86-64.
+        halves(a, b, |a, b| unsafe { _mm_or_ps(a, b) })
+    }
 }

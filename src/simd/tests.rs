@@ -37,12 +37,53 @@ fn results<S: Simd>(simd: S) -> Vec<u32> {
                     let b: [f32; LANES] =
                         std::array::from_fn(|lane| VALUES[(half * LANES + lane + shift) % VALUES.len()]);
                     let (a, b) = (simd.load(&a), simd.load(&b));
-                    let lanes = [simd.add(a, b), simd.sub(a, b), simd.mul(a, b), simd.min(a, b), simd.max(a, b)];
+                    let lanes = [
+                        simd.add(a, b),
+                        simd.sub(a, b),
+                        simd.mul(a, b),
+                        simd.div(a, b),
+                        simd.min(a, b),
+                        simd.max(a, b),
+                    ];
                     for value in lanes.into_iter().flat_map(|lanes| simd.store(lanes)) {
                         results.push(if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() });
                     }
                     results.extend([simd.less(a, b), simd.less_or_equal(a, b)]);
                 }
+            }
+            results
+        }
+    }
+    simd.vectorize(All)
+}
+
+/// What the operations on whole lanes make of every mask, and of lanes in many orders.
+fn arrangements<S: Simd>(simd: S) -> Vec<u32> {
+    struct All;
+    impl SimdKernel for All {
+        type Output = Vec<u32>;
+
+        fn run<S: Simd>(self, simd: S) -> Vec<u32> {
+            let mut results = Vec::new();
+            let numbers: [u32; LANES] = [70, 61, 52, 43, 34, 25, 16, 7];
+            for mask in 0..1 << LANES {
+                // Some negative, two equal.
+                let keys: [f32; LANES] = std::array::from_fn(|lane| {
+                    let value = ((lane + 1) * (mask + 3) % 11) as f32;
+                    if mask >> lane & 1 == 1 { value } else { -value }
+                });
+                let keys = simd.load(&keys);
+                let sorted = simd.store(simd.sort_descending(keys));
+                assert!(sorted.is_sorted_by_key(|key| std::cmp::Reverse(key.to_bits() as i32)), "{sorted:?}");
+                results.extend(sorted.map(f32::to_bits));
+                results.extend(simd.store(simd.order_two(keys))[..2].iter().map(|key| key.to_bits()));
+                results.extend(simd.gather(&numbers, keys));
+                let count = mask.count_ones() as usize;
+                let (lanes, values) = (simd.compress_lanes(keys, mask as u32), simd.compress(&numbers, mask as u32));
+                results.extend(simd.store(lanes)[..count].iter().map(|key| key.to_bits()));
+                results.extend(&values[..count]);
+                let (and, or) = (simd.and(keys, simd.splat(-1.5)), simd.or(keys, simd.splat(-0.0)));
+                results.extend([and, or].into_iter().flat_map(|lanes| simd.store(lanes)).map(f32::to_bits));
             }
             results
         }
@@ -73,10 +114,12 @@ fn every_instruction_set_computes_what_the_scalar_one_does() {
     {
         if let Some(simd) = Sse42::detect() {
             assert_eq!(results(simd), results(Scalar), "SSE4.2");
+            assert_eq!(arrangements(simd), arrangements(Scalar), "SSE4.2");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
         if let Some(simd) = Avx2::detect() {
             assert_eq!(results(simd), results(Scalar), "AVX2");
+            assert_eq!(arrangements(simd), arrangements(Scalar), "AVX2");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
         if let Some(simd) = Avx512::detect() {

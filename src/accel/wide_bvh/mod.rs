@@ -9,22 +9,25 @@ mod collapse;
 mod leaf_test;
 mod leaves;
 mod node;
+mod packet;
 #[cfg(test)]
 mod tests;
 mod traverse;
 #[cfg(any(test, debug_assertions))]
 mod validate;
+mod wavefront;
 
 use glam::Vec4;
 use leaves::Leaves;
 use node::{Child, WideNode};
+use wavefront::Wavefront;
 
 use super::bvh::{BinnedSah, build, reinsert};
 use super::reference::{Reference, TriangleSource};
 use super::stats::Shape;
 use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
 use crate::geometry::{Aabb, PrecisionMode, Ray};
-use crate::simd::Simd;
+use crate::simd::{Simd, prefetch_lines};
 
 pub(crate) struct WideBvh {
     bounds: Aabb,
@@ -66,6 +69,14 @@ impl WideBvh {
         Ok(wide)
     }
 
+    /// Asks for a child's cache lines ahead of its use: those of a node, and of a leaf of six triangles.
+    #[inline(always)]
+    fn prefetch(&self, child: Child) {
+        let node = self.nodes.as_ptr().wrapping_add(child.node_index()).cast();
+        let leaf = self.leaves.address(child.triangles());
+        prefetch_lines::<4>(if child.is_leaf() { leaf } else { node });
+    }
+
     pub(crate) fn shape(&self) -> Shape {
         Shape {
             reference_count: self.leaves.triangle_count(),
@@ -98,5 +109,19 @@ impl<S: Simd> Accel for Vectorized<'_, S> {
         then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
     ) -> R {
         self.simd.vectorize(traverse::Traversal::<Q, P, _, _>::new(self.bvh, ray, then))
+    }
+
+    fn query_runs<'r, Q, P, R, T>(
+        &self,
+        next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+        answer: impl Fn(&mut T, Option<ClosestHit>),
+    ) where
+        Q: Query,
+        P: PrecisionMode,
+        for<'a> &'a R: Into<Ray>,
+        R: 'r,
+        T: 'r,
+    {
+        self.simd.vectorize(Wavefront::<Q, P, _, _, _, _>::new(self.bvh, next_run, answer));
     }
 }

@@ -13,19 +13,30 @@ pub(super) struct Child(u32);
 impl Child {
     const LEAF: u32 = 1 << 31;
     const FIRST_BITS: u32 = 28;
-    /// Any leaf, where none is meant.
-    pub(super) const NONE: Self = Self(Self::LEAF);
     /// How many triangles a leaf's 28 bits can tell apart.
     pub(super) const MOST_TRIANGLES: usize = 1 << Self::FIRST_BITS;
 
+    /// No child. As a node it would be the last of more than there can be.
+    pub(super) const NONE: Self = Self(Self::LEAF - 1);
+
     pub(super) fn node(index: usize) -> Self {
-        debug_assert!(index < Self::LEAF as usize);
+        debug_assert!(index < Self::NONE.0 as usize);
         Self(index as u32)
     }
 
     pub(super) fn leaf(first: usize, count: usize) -> Self {
         debug_assert!(first < Self::MOST_TRIANGLES && (1..=LANES).contains(&count));
         Self(Self::LEAF | ((count as u32 - 1) << Self::FIRST_BITS) | first as u32)
+    }
+
+    #[inline(always)]
+    pub(super) fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
+    #[inline(always)]
+    pub(super) const fn bits(self) -> u32 {
+        self.0
     }
 
     #[inline(always)]
@@ -60,7 +71,13 @@ const _: () = assert!(size_of::<WideNode>() == 256);
 
 impl WideNode {
     pub(super) const EMPTY: Self =
-        Self { planes: [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3], children: [Child::NONE; LANES] };
+        Self { planes: [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3], children: [Child(Child::LEAF); LANES] };
+
+    /// The children's bits, to move as a register.
+    #[inline(always)]
+    pub(super) fn child_bits(&self) -> [u32; LANES] {
+        self.children.map(Child::bits)
+    }
 
     pub(super) fn set(&mut self, slot: usize, planes: &[[f32; 2]; 3], child: Child) {
         for (axis, [lower, upper]) in planes.iter().enumerate() {

@@ -1,0 +1,802 @@
+//! Many rays in flight, a step at a time each: while one ray's node comes from memory the others are tested.
+//!
+//! A ray in flight is on one list: its next child is a node, or a leaf; its leaf left candidates; or its next child
+//! waits on its stack. A pass works through one list, and what a ray does in it does not depend on what it finds:
+//! without branches to mispredict, the CPU overlaps neighbours on the list.
+//!
+//! Source for the lists: Wald, Benthin, Boulos 2008 (see [`super`]) for streams; Fuetterer, Lojewski, Pfreundt, Ebert
+//! 2015, "Efficient ray tracing kernels for modern CPU architectures", for the order of hits as keys.
+
+use std::marker::PhantomData;
+
+use glam::Vec3A;
+
+use super::WideBvh;
+use super::leaves::Leaf;
+use super::node::{Child, WideNode};
+use super::packet::{PACKET, Packet, Spread};
+use super::traverse::Traversal;
+use crate::accel::leaf::{ClosestHit, Query};
+use crate::geometry::{Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, settled};
+use crate::math::{UNIT_ROUNDOFF, gamma};
+use crate::simd::{LANES, Simd, SimdKernel};
+
+/// How many rays are in flight. With 16 or 64 a batch of random rays among 871 thousand triangles takes as long or up
+/// to 5 % longer.
+const IN_FLIGHT: usize = 32;
+
+/// The fewest rays of a run for which the wavefront's memory is asked for.
+const LEAST_RAYS: usize = 2 * IN_FLIGHT;
+
+/// Coordinates below this: products of three differences do not overflow `f32`.
+pub(super) const MOST_REACH: f32 = (1u64 << 39) as f32;
+
+/// The lists.
+const NODE: usize = 0;
+const LEAF: usize = 1;
+const POP: usize = 2;
+/// Those whose hit is known, but not evaluated.
+const EVALUATE: usize = 3;
+const LISTS: usize = 4;
+
+/// Where rays come from: runs of rays with a place for each answer.
+struct Source<'a, R, T, N> {
+    rays: &'a [R],
+    answers: &'a mut [T],
+    /// How many rays are left of those that were refused as packets.
+    refused: usize,
+    /// How many rays to pass by after the next packet that is given up.
+    patience: usize,
+    next_run: N,
+}
+
+impl<'a, R, T, N> Source<'a, R, T, N>
+where
+    for<'r> &'r R: Into<Ray>,
+    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
+{
+    /// Goes on to the next run; false if there is none.
+    #[inline(always)]
+    fn next_run(&mut self) -> bool {
+        let run = (self.next_run)();
+        let is_there = run.is_some();
+        (self.rays, self.answers) = run.unwrap_or_default();
+        is_there
+    }
+
+    /// Whether as many rays are left of this run.
+    #[inline(always)]
+    fn has_at_least(&self, count: usize) -> bool {
+        self.rays.len() >= count
+    }
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(&'a R, &'a mut T)> {
+        loop {
+            if let Some((ray, rays)) = self.rays.split_first()
+                && let Some((answer, answers)) = std::mem::take(&mut self.answers).split_first_mut()
+            {
+                (self.rays, self.answers) = (rays, answers);
+                self.refused = self.refused.saturating_sub(1);
+                return Some((ray, answer));
+            }
+            if !self.next_run() {
+                return None;
+            }
+        }
+    }
+
+    /// The next rays if they look like a packet, and their places. Looks once at each group.
+    #[inline(always)]
+    fn next_packet(&mut self, bounds: &Aabb) -> Option<(&'a [R; PACKET], Spread, &mut [T])> {
+        if self.refused != 0 {
+            return None;
+        }
+        if self.rays.is_empty() && !self.next_run() {
+            return None;
+        }
+        self.refused = PACKET;
+        let rays = self.rays.first_chunk::<PACKET>()?;
+        let spread = Spread::of_packet(rays, bounds)?;
+        Some((rays, spread, &mut self.answers[..PACKET]))
+    }
+
+    /// After an attempt at a packet: goes past it, or leaves its rays and ever more of those that follow to the
+    /// wavefront.
+    #[inline(always)]
+    fn end_packet(&mut self, is_answered: bool) {
+        if is_answered {
+            self.rays = &self.rays[PACKET..];
+            self.answers = &mut std::mem::take(&mut self.answers)[PACKET..];
+            (self.refused, self.patience) = (0, PACKET);
+        } else {
+            self.refused = self.patience;
+            self.patience = (2 * self.patience).min(64 * PACKET);
+        }
+    }
+}
+
+/// What a box test needs of a ray, and where the ray is. 64 bytes, one cache line.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct BoxRay {
+    inverse: [f32; 3],
+    near_offset: [f32; 3],
+    far_offset: [f32; 3],
+    /// Where a near plane begins among an axis's planes: 0 or [`LANES`].
+    near_side: [u32; 3],
+    t_min: f32,
+    /// No less than the best hit's `t`, the low bits set: see [`cull_distance`].
+    t_max: f32,
+    child: Child,
+    /// The end of its stack.
+    top: u32,
+}
+
+/// What a leaf test needs of a ray. 64 bytes, one cache line.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct LeafRay {
+    /// In the order of `axes`.
+    origin: [f32; 3],
+    shear: [f32; 2],
+    axes: [u32; 3],
+    inverse_depth: f32,
+    t_min: f32,
+    /// The best hit's `t` lies between the two.
+    nearest: f32,
+    farthest: f32,
+    /// The best hit if it is not evaluated yet: lane and leaf.
+    pending: Option<(u32, Child)>,
+    padding: u32,
+}
+
+const _: () = assert!(size_of::<BoxRay>() == 64);
+const _: () = assert!(size_of::<LeafRay>() == 64);
+
+impl BoxRay {
+    const IDLE: Self = Self {
+        inverse: [0.0; 3],
+        near_offset: [0.0; 3],
+        far_offset: [0.0; 3],
+        near_side: [0; 3],
+        t_min: 0.0,
+        t_max: 0.0,
+        child: Child::NONE,
+        top: LANES as u32,
+    };
+}
+
+impl LeafRay {
+    const IDLE: Self = Self {
+        origin: [0.0; 3],
+        shear: [0.0; 2],
+        axes: [0; 3],
+        inverse_depth: 0.0,
+        t_min: 0.0,
+        nearest: 0.0,
+        farthest: 0.0,
+        pending: None,
+        padding: 0,
+    };
+}
+
+/// What is used at the start and at the end of a ray.
+struct Slot<'a, T> {
+    ray: TriangleRay,
+    best: ClosestHit,
+    answer: Option<&'a mut T>,
+}
+
+#[derive(Clone, Copy)]
+struct List {
+    ids: [u8; IN_FLIGHT],
+    count: usize,
+}
+
+impl List {
+    #[inline(always)]
+    fn push(&mut self, id: usize) {
+        self.ids[self.count % IN_FLIGHT] = id as u8;
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    fn id(&self, at: usize) -> usize {
+        usize::from(self.ids[at % IN_FLIGHT]) % IN_FLIGHT
+    }
+}
+
+/// How many children can wait, in a power of two so that an index needs no check.
+const STACK: usize = 256;
+/// A level leaves all children but one waiting.
+const MOST_LEVELS: usize = (STACK - LANES) / (LANES - 1);
+
+/// The children that wait for a ray, and where it enters each; the first is at [`LANES`], so that below the last there
+/// always is a whole register. Just below the first is [`Child::NONE`], which is never culled.
+#[derive(Clone, Copy)]
+struct Stack {
+    keys: [f32; STACK + LANES],
+    children: [u32; STACK + LANES],
+}
+
+impl Stack {
+    const EMPTY: Self =
+        Self { keys: [f32::NEG_INFINITY; STACK + LANES], children: [Child::NONE.bits(); STACK + LANES] };
+
+    #[inline(always)]
+    fn child(&self, at: u32) -> Child {
+        Child::from_bits(self.children[at as usize % STACK])
+    }
+
+    /// Eight places from one on.
+    #[inline(always)]
+    fn set_children(&mut self, at: u32, children: &[u32; LANES]) {
+        self.children[at as usize % STACK..][..LANES].copy_from_slice(children);
+    }
+
+    #[inline(always)]
+    fn set_keys(&mut self, at: u32, keys: &[f32; LANES]) {
+        self.keys[at as usize % STACK..][..LANES].copy_from_slice(keys);
+    }
+
+    #[inline(always)]
+    fn keys(&self, at: u32) -> &[f32; LANES] {
+        self.keys[at as usize % STACK..].first_chunk().expect("a register more than can be named")
+    }
+}
+
+/// The rays of one worker, as a kernel.
+pub(super) struct Wavefront<'b, 'a, Q, P, R, T, N, A> {
+    bvh: &'b WideBvh,
+    source: Source<'a, R, T, N>,
+    answer: A,
+    choices: PhantomData<(Q, P)>,
+}
+
+impl<'b, 'a, Q, P, R, T, N, A> Wavefront<'b, 'a, Q, P, R, T, N, A> {
+    pub(super) fn new(bvh: &'b WideBvh, next_run: N, answer: A) -> Self {
+        let source = Source { rays: &[], answers: &mut [], refused: 0, patience: PACKET, next_run };
+        Self { bvh, source, answer, choices: PhantomData }
+    }
+}
+
+/// The kernel's state.
+struct Flight<'b, 'a, 's, R, T, N, A> {
+    bvh: &'b WideBvh,
+    source: Source<'a, R, T, N>,
+    answer: A,
+    stacks: &'s mut [Stack; IN_FLIGHT],
+    boxes: [BoxRay; IN_FLIGHT],
+    leaves: [LeafRay; IN_FLIGHT],
+    slots: [Slot<'a, T>; IN_FLIGHT],
+    lists: [List; LISTS],
+    lower: Vec3A,
+    upper: Vec3A,
+    /// Whether rays may be taken for the wavefront at all.
+    is_in_range: bool,
+}
+
+/// Whether the wavefront takes a ray, which then is valid: its numbers far from overflow and underflow, its interval
+/// without negative numbers, so that distances are in the order of their bits. A NaN makes it false.
+#[inline(always)]
+pub(super) fn is_fit(ray: &Ray) -> bool {
+    const LEAST: f32 = 1.0 / MOST_REACH;
+    let (origin, direction) = (Vec3A::from(ray.origin).abs(), Vec3A::from(ray.direction).abs());
+    let in_range = origin.cmplt(Vec3A::splat(MOST_REACH))
+        & direction.cmplt(Vec3A::splat(MOST_REACH))
+        & direction.cmpgt(Vec3A::splat(LEAST));
+    in_range.all() && ray.t_min >= 0.0 && ray.t_min <= ray.t_max
+}
+
+impl<'a, Q, P, R, T, N, A> SimdKernel for Wavefront<'_, 'a, Q, P, R, T, N, A>
+where
+    for<'r> &'r R: Into<Ray>,
+    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
+    A: Fn(&mut T, Option<ClosestHit>),
+    Q: Query,
+    P: PrecisionMode,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { bvh, mut source, answer, .. } = self;
+        let mut memory = Vec::new();
+        // A run too short to pay for the wavefront's memory, or all of them where there is none to be had.
+        while !source.has_at_least(LEAST_RAYS)
+            || bvh.depth as usize > MOST_LEVELS
+            || memory.try_reserve_exact(IN_FLIGHT).is_err()
+        {
+            for _ in 0..source.rays.len() {
+                let Some((ray, place)) = source.next() else { break };
+                simd.vectorize(Traversal::<Q, P, _, _>::new(bvh, ray, |found, _| answer(place, found)));
+            }
+            if !source.next_run() {
+                return;
+            }
+        }
+        memory.resize(IN_FLIGHT, Stack::EMPTY);
+        let stacks = memory.first_chunk_mut().expect("it was made so long");
+        let ray = Ray { origin: glam::Vec3::ZERO, t_min: 0.0, direction: glam::Vec3::X, t_max: 0.0 };
+        let idle_ray = TriangleRay::new(&ray);
+        let idle_hit = ClosestHit::none(&ray);
+        let (lower, upper) = (Vec3A::from(bvh.bounds.lower), Vec3A::from(bvh.bounds.upper));
+        let mut flight = Flight {
+            bvh,
+            source,
+            answer,
+            stacks,
+            boxes: [BoxRay::IDLE; IN_FLIGHT],
+            leaves: [LeafRay::IDLE; IN_FLIGHT],
+            slots: std::array::from_fn(|_| Slot { ray: idle_ray, best: idle_hit, answer: None }),
+            lists: [List { ids: [0; IN_FLIGHT], count: 0 }; LISTS],
+            lower,
+            upper,
+            is_in_range: lower.abs().max(upper.abs()).max_element() < MOST_REACH,
+        };
+        for id in 0..IN_FLIGHT {
+            if !flight.feed::<Q, P, S>(simd, id) {
+                break;
+            }
+        }
+        while flight.lists[NODE].count + flight.lists[LEAF].count != 0 {
+            flight.test_nodes::<Q, S>(simd);
+            flight.test_leaves::<Q, P, S>(simd);
+            flight.pop::<Q, P, S>(simd);
+            let is_idle = flight.lists[NODE].count + flight.lists[LEAF].count == 0;
+            while flight.lists[EVALUATE].count >= HITS || is_idle && flight.lists[EVALUATE].count > 0 {
+                flight.evaluate::<Q, P, S>(simd);
+            }
+        }
+    }
+}
+
+impl<'a, R, T, N, A> Flight<'_, 'a, '_, R, T, N, A>
+where
+    for<'r> &'r R: Into<Ray>,
+    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
+    A: Fn(&mut T, Option<ClosestHit>),
+{
+    /// The next ray that is fit for the wavefront takes a slot; others are answered at once. False without rays.
+    #[inline(always)]
+    fn feed<Q: Query, P: PrecisionMode, S: Simd>(&mut self, simd: S, id: usize) -> bool {
+        loop {
+            if self.is_in_range {
+                while let Some((rays, spread, places)) = self.source.next_packet(&self.bvh.bounds) {
+                    let packet = Packet::<Q, P, _, _, _>::new(self.bvh, rays, &spread, places, &self.answer);
+                    let is_answered = simd.vectorize(packet);
+                    self.source.end_packet(is_answered);
+                }
+            }
+            let Some((source, place)) = self.source.next() else { return false };
+            let ray: Ray = source.into();
+            if self.is_in_range && is_fit(&ray) {
+                self.start(id, &ray, place);
+                return true;
+            }
+            let answer = &self.answer;
+            simd.vectorize(Traversal::<Q, P, _, _>::new(self.bvh, source, |found, _| answer(place, found)));
+        }
+    }
+
+    #[inline(always)]
+    fn start(&mut self, id: usize, ray: &Ray, place: &'a mut T) {
+        let triangle_ray = TriangleRay::new(ray);
+        let [kx, ky, kz] = triangle_ray.axes;
+        let origin = Vec3A::from(ray.origin);
+        let inverse = Vec3A::ONE / Vec3A::from(ray.direction);
+        // As `SlabRay::fused_offsets`, all axes at once.
+        let reach = (self.upper - origin).max(origin - self.lower).max_element();
+        let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
+        let offset = origin * inverse;
+        let slack = inverse.abs() * slack_distance + offset.abs() * gamma(4);
+        let sides = inverse.is_negative_bitmask();
+        let inverse_array = inverse.to_array();
+        // Adding 0 makes 0 of -0, whose bits are those of a negative number.
+        let (t_min, t_max) = (ray.t_min + 0.0, ray.t_max + 0.0);
+        self.boxes[id] = BoxRay {
+            inverse: inverse_array,
+            near_offset: (offset + slack).to_array(),
+            far_offset: (offset - slack).to_array(),
+            near_side: [(sides << 3) & 8, (sides << 2) & 8, (sides << 1) & 8],
+            t_min,
+            t_max: cull_distance(t_max),
+            child: self.bvh.root,
+            top: LANES as u32,
+        };
+        self.leaves[id] = LeafRay {
+            origin: [triangle_ray.origin[kx], triangle_ray.origin[ky], triangle_ray.origin[kz]],
+            shear: [triangle_ray.per_z[kx], triangle_ray.per_z[ky]],
+            axes: [kx as u32, ky as u32, kz as u32],
+            inverse_depth: inverse_array[kz],
+            t_min,
+            nearest: t_max,
+            farthest: t_max,
+            pending: None,
+            padding: 0,
+        };
+        let slot = &mut self.slots[id];
+        slot.ray = triangle_ray;
+        slot.best = ClosestHit::none(ray);
+        slot.answer = Some(place);
+        self.lists[usize::from(self.bvh.root.is_leaf())].push(id);
+    }
+
+    /// One node for each ray on the list.
+    #[inline(always)]
+    fn test_nodes<Q: Query, S: Simd>(&mut self, simd: S) {
+        let key_bits = simd.splat(f32::from_bits(!(LANES as u32 - 1)));
+        let lane_numbers: [f32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7].map(f32::from_bits);
+        let lane_numbers = simd.load(&lane_numbers);
+        let sign_bit = simd.splat(-0.0);
+        let nodes = self.lists[NODE];
+        self.lists[NODE].count = 0;
+        let mut next_lists = [0u8; IN_FLIGHT];
+        for (at, list) in next_lists.iter_mut().enumerate().take(nodes.count) {
+            let id = nodes.id(at);
+            let ray = &mut self.boxes[id];
+            let node = &self.bvh.nodes[ray.child.node_index()];
+            let (enter, leave) = slabs(simd, ray, node);
+            let hits = simd.less_or_equal(enter, leave);
+            let hit_count = hits.count_ones();
+            let stack = &mut self.stacks[id];
+            let next = if Q::FIRST_HIT_ENDS {
+                // The largest, the last, goes on; what waits goes on after a miss.
+                let waiting = stack.child(ray.top - 1);
+                stack.set_children(ray.top, &simd.compress(&node.child_bits(), hits));
+                let largest = node.children[(31 - (hits | 1).leading_zeros()) as usize % LANES];
+                if hits == 0 { waiting } else { largest }
+            } else {
+                let keys = simd.or(simd.and(enter, key_bits), lane_numbers);
+                let keys = if hit_count <= 2 {
+                    // Most nodes: without a branch on how many.
+                    simd.order_two(simd.compress_lanes(keys, hits))
+                } else {
+                    // Negative for a miss: `leave` is finite, `enter` not negative, neither is NaN.
+                    simd.sort_descending(simd.or(keys, simd.and(simd.sub(leave, enter), sign_bit)))
+                };
+                stack.set_children(ray.top, &simd.gather(&node.child_bits(), keys));
+                stack.set_keys(ray.top, &simd.store(keys));
+                // With no hit this is what waited.
+                stack.child(ray.top + hit_count - 1)
+            };
+            let is_culled = if Q::FIRST_HIT_ENDS { next == Child::NONE } else { hit_count == 0 };
+            ray.top = ray.top + hit_count - u32::from(!is_culled);
+            ray.child = next;
+            self.bvh.prefetch(next);
+            *list = if is_culled { POP as u8 } else { u8::from(next.is_leaf()) };
+        }
+        for (at, list) in next_lists.iter().enumerate().take(nodes.count) {
+            self.lists[usize::from(*list) % LISTS].push(nodes.id(at));
+        }
+    }
+
+    /// One leaf for each ray on the list.
+    #[inline(always)]
+    fn test_leaves<Q: Query, P: PrecisionMode, S: Simd>(&mut self, simd: S) {
+        for at in 0..std::mem::take(&mut self.lists[LEAF].count) {
+            let id = self.lists[LEAF].id(at);
+            let child = self.boxes[id].child;
+            let leaf = self.bvh.leaves.leaf(child.triangles());
+            let ray = &self.leaves[id];
+            let sheared = sheared(simd, ray, &leaf);
+            let weights = weights(simd, &sheared);
+            let candidates = leaf.mask() & !differ_in_sign(simd, &weights);
+            if candidates != 0 {
+                let spans = spans(simd, &sheared, &weights, simd.splat(ray.inverse_depth));
+                if self.keep_candidates::<Q, P, S>(simd, id, &leaf, candidates, &spans) {
+                    // Nothing is left to do for it.
+                    self.boxes[id].top = LANES as u32;
+                }
+            }
+            self.lists[POP].push(id);
+        }
+    }
+
+    /// Keeps the best of a leaf's candidates. True ends the query.
+    #[inline(always)]
+    fn keep_candidates<Q: Query, P: PrecisionMode, S: Simd>(
+        &mut self,
+        simd: S,
+        id: usize,
+        leaf: &Leaf<'_>,
+        candidates: u32,
+        spans: &Spans<S>,
+    ) -> bool {
+        let child = self.boxes[id].child;
+        let (ray, slot) = (&mut self.leaves[id], &mut self.slots[id]);
+        let mut left = candidates & spans.within(simd, simd.splat(ray.t_min), simd.splat(ray.farthest));
+        if left == 0 {
+            return false;
+        }
+        let (from, to) = (simd.store(spans.from), simd.store(spans.to));
+        while left != 0 {
+            let lane = left.trailing_zeros();
+            left &= left - 1;
+            let (from, to) = (from[lane as usize % LANES], to[lane as usize % LANES]);
+            if from > ray.farthest {
+                continue;
+            }
+            let is_certain = spans.certain >> lane & 1 == 1;
+            if is_certain && from >= ray.t_min && to < ray.nearest {
+                ray.pending = Some((lane, child));
+                (ray.nearest, ray.farthest) = (from, to);
+                if Q::FIRST_HIT_ENDS {
+                    return true;
+                }
+                continue;
+            }
+            settle::<P>(self.bvh, ray, slot);
+            let triangle = leaf.triangle(lane as usize % LANES);
+            let interval = Interval { t_min: ray.t_min, t_max: slot.best.t };
+            if let Some(hit) = slot.ray.hit::<P>(&triangle, interval)
+                && slot.best.improve(&hit, &triangle)
+                && Q::FIRST_HIT_ENDS
+            {
+                return true;
+            }
+            (ray.nearest, ray.farthest) = (slot.best.t, slot.best.t);
+        }
+        self.boxes[id].t_max = cull_distance(ray.farthest);
+        false
+    }
+
+    /// The next child that waits for each ray on the list; a ray without one is answered, and another takes its slot.
+    #[inline(always)]
+    fn pop<Q: Query, P: PrecisionMode, S: Simd>(&mut self, simd: S) {
+        let mut at = 0;
+        while at < self.lists[POP].count {
+            let id = self.lists[POP].id(at);
+            let ray = &mut self.boxes[id];
+            let stack = &self.stacks[id];
+            let mut top = ray.top;
+            if !Q::FIRST_HIT_ENDS {
+                let t_max = simd.splat(ray.t_max);
+                loop {
+                    // Below the first is one that is never culled.
+                    let left = simd.less_or_equal(simd.load(stack.keys(top - LANES as u32)), t_max);
+                    top -= left.leading_zeros() - (32 - LANES as u32);
+                    if left != 0 {
+                        break;
+                    }
+                }
+            }
+            let next = stack.child(top - 1);
+            if next == Child::NONE {
+                if !Q::FIRST_HIT_ENDS && P::HAS_LANES && self.leaves[id].pending.is_some() {
+                    self.lists[EVALUATE].push(id);
+                } else {
+                    self.finish::<Q, P>(id);
+                    self.feed::<Q, P, S>(simd, id);
+                }
+            } else {
+                ray.child = next;
+                ray.top = top - 1;
+                self.bvh.prefetch(next);
+                self.lists[usize::from(next.is_leaf())].push(id);
+            }
+            at += 1;
+        }
+        self.lists[POP].count = 0;
+    }
+
+    /// The last rays on the list, as many as are evaluated at once.
+    #[inline(always)]
+    fn evaluate<Q: Query, P: PrecisionMode, S: Simd>(&mut self, simd: S) {
+        let first = self.lists[EVALUATE].count.saturating_sub(HITS);
+        let count = self.lists[EVALUATE].count - first;
+        let list = self.lists[EVALUATE];
+        self.lists[EVALUATE].count = first;
+        let mut lanes = HitLanes::EMPTY;
+        for lane in 0..count {
+            let id = list.id(first + lane);
+            if let Some((of_leaf, child)) = self.leaves[id].pending {
+                let triangle = self.bvh.leaves.leaf(child.triangles()).triangle(of_leaf as usize % LANES);
+                lanes.set(lane, &self.slots[id].ray, &triangle);
+                self.slots[id].best.triangle = triangle;
+            }
+        }
+        let hits = lanes.evaluate();
+        for lane in 0..count {
+            let id = list.id(first + lane);
+            if let Some(hit) = settled(&hits, lane) {
+                self.leaves[id].pending = None;
+                let best = &mut self.slots[id].best;
+                (best.t, best.u, best.v) = (hit.t, hit.u, hit.v);
+            }
+            self.finish::<Q, P>(id);
+            self.feed::<Q, P, S>(simd, id);
+        }
+    }
+
+    #[inline(always)]
+    fn finish<Q: Query, P: PrecisionMode>(&mut self, id: usize) {
+        let (ray, slot) = (&mut self.leaves[id], &mut self.slots[id]);
+        let Some(place) = slot.answer.take() else { return };
+        if Q::FIRST_HIT_ENDS {
+            let is_hit = ray.pending.is_some() || slot.best.found().is_some();
+            (self.answer)(place, is_hit.then_some(slot.best));
+        } else {
+            settle::<P>(self.bvh, ray, slot);
+            (self.answer)(place, slot.best.found().map(|hit| self.bvh.leaves.resolve(hit)));
+        }
+    }
+}
+
+/// Evaluates the best hit where that was put off.
+#[inline(always)]
+fn settle<P: PrecisionMode>(bvh: &WideBvh, ray: &mut LeafRay, slot: &mut Slot<'_, impl Sized>) {
+    let Some((lane, child)) = ray.pending.take() else { return };
+    let triangle = bvh.leaves.leaf(child.triangles()).triangle(lane as usize % LANES);
+    let interval = Interval { t_min: ray.t_min, t_max: f32::INFINITY };
+    if let Some(hit) = slot.ray.hit::<P>(&triangle, interval) {
+        slot.best = ClosestHit { t: hit.t, u: hit.u, v: hit.v, triangle };
+    }
+}
+
+/// `t` with its low bits set, so that it is no less than any key that was made of an equal distance.
+#[inline(always)]
+fn cull_distance(t: f32) -> f32 {
+    // Adding 0 makes 0 of -0, whose bits are those of a negative number.
+    f32::from_bits((t.min(f32::MAX) + 0.0).to_bits() | (LANES as u32 - 1))
+}
+
+/// Where a ray enters and leaves a node's boxes.
+#[inline(always)]
+fn slabs<S: Simd>(simd: S, ray: &BoxRay, node: &WideNode) -> (S::F32x8, S::F32x8) {
+    let (near_x, far_x) = slab(simd, ray, node, 0);
+    let (near_y, far_y) = slab(simd, ray, node, 1);
+    let (near_z, far_z) = slab(simd, ray, node, 2);
+    let enter = simd.max(near_x, simd.max(near_y, simd.max(near_z, simd.splat(ray.t_min))));
+    let leave = simd.min(far_x, simd.min(far_y, simd.min(far_z, simd.splat(ray.t_max))));
+    (enter, leave)
+}
+
+#[inline(always)]
+fn slab<S: Simd>(simd: S, ray: &BoxRay, node: &WideNode, axis: usize) -> (S::F32x8, S::F32x8) {
+    let near = ray.near_side[axis] as usize & LANES;
+    let planes = node.planes[axis].as_flattened();
+    let (near, far) = (
+        planes[near..].first_chunk().expect("two registers"),
+        planes[near ^ LANES..].first_chunk().expect("two registers"),
+    );
+    let inverse = simd.splat(ray.inverse[axis]);
+    let near = simd.mul_sub(simd.load(near), inverse, simd.splat(ray.near_offset[axis]));
+    let far = simd.mul_sub(simd.load(far), inverse, simd.splat(ray.far_offset[axis]));
+    (near, far)
+}
+
+/// A coordinate of the three vertices of eight triangles.
+pub(super) type Corners<S> = [<S as Simd>::F32x8; 3];
+
+/// The vertices of eight triangles, sheared so that the ray is the z axis.
+#[inline(always)]
+fn sheared<S: Simd>(simd: S, ray: &LeafRay, leaf: &Leaf<'_>) -> [Corners<S>; 3] {
+    let [kx, ky, kz] = [ray.axes[0] as usize, ray.axes[1] as usize, ray.axes[2] as usize];
+    let z = from_origin(simd, leaf, kz, ray.origin[2]);
+    let x = shear(simd, from_origin(simd, leaf, kx, ray.origin[0]), simd.splat(ray.shear[0]), z);
+    let y = shear(simd, from_origin(simd, leaf, ky, ray.origin[1]), simd.splat(ray.shear[1]), z);
+    [x, y, z]
+}
+
+/// Rounding keeps order: the difference of two rounded products has the right sign or is zero. So weights that differ
+/// in sign refuse a triangle, and three of one sign, none zero, accept it.
+#[inline(always)]
+pub(super) fn weights<S: Simd>(simd: S, [x, y, _]: &[Corners<S>; 3]) -> Corners<S> {
+    [edge(simd, x[2], y[1], y[2], x[1]), edge(simd, x[0], y[2], y[0], x[2]), edge(simd, x[1], y[0], y[1], x[0])]
+}
+
+#[inline(always)]
+pub(super) fn differ_in_sign<S: Simd>(simd: S, [a, b, c]: &Corners<S>) -> u32 {
+    let zero = simd.splat(0.0);
+    let (least, greatest) = (simd.min(*a, simd.min(*b, *c)), simd.max(*a, simd.max(*b, *c)));
+    simd.less(least, zero) & simd.less(zero, greatest)
+}
+
+/// What `f32` can tell of where a ray meets eight triangles.
+pub(super) struct Spans<S: Simd> {
+    /// The triangles that the ray's line certainly meets.
+    pub(super) certain: u32,
+    /// The `t` of a hit on a triangle lies between the two, however it is evaluated.
+    pub(super) from: S::F32x8,
+    pub(super) to: S::F32x8,
+}
+
+impl<S: Simd> Spans<S> {
+    #[inline(always)]
+    pub(super) fn within(&self, simd: S, t_min: S::F32x8, t_max: S::F32x8) -> u32 {
+        simd.less_or_equal(t_min, self.to) & simd.less_or_equal(self.from, t_max)
+    }
+}
+
+/// Every evaluation of a hit gives a point of the triangle, so `t` lies between those of the vertices, but for
+/// roundings: with `u = 2^-24` and relative to the largest of the three, 3u for each of these (the difference, the
+/// inverse, the product), u for the hit's, 2^-30 for evaluation in `f64` (`evaluation.rs`), and u for adding the slack:
+/// less than `gamma(8)`.
+///
+/// Closer bounds come from the weights. Of the sheared vertices let `s = sum(|x| + |y|)`, `n` the largest of these,
+/// and `m` the largest `|z|`. Before the shear no coordinate exceeds `n + m`, so the sheared ones are off by
+/// `e = 2 u (n + m) + 4 u m` at most (`triangle_hit.rs`), which moves the three weights by `2 e s + 6 e^2` together;
+/// and their own roundings by `u s^2 / 2`. Weights that move by d together move the depth that they interpolate, where
+/// their sum is w, by no more than `2 d / w` of the range of the depths; or else by no more than that range, which
+/// this then exceeds. The interpolation's own roundings add less than `16 u m`. The factors below are a little larger
+/// for the roundings of the bound itself; absolute terms cover underflow.
+#[inline(always)]
+pub(super) fn spans<S: Simd>(
+    simd: S,
+    &[x, y, z]: &[Corners<S>; 3],
+    &[a, b, c]: &Corners<S>,
+    inverse_depth: S::F32x8,
+) -> Spans<S> {
+    const LEAST_WEIGHT: f32 = 1.0 / (1u64 << 60) as f32;
+    const LEAST_DEPTH: f32 = LEAST_WEIGHT / (1 << 20) as f32;
+
+    let zero = simd.splat(0.0);
+    let (least, greatest) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
+    let certain = simd.less(zero, least) | simd.less(greatest, zero);
+
+    let (nearest, farthest) = (simd.min(z[0], simd.min(z[1], z[2])), simd.max(z[0], simd.max(z[1], z[2])));
+    let most = simd.max(abs(simd, nearest), abs(simd, farthest));
+    let (x, y) = (abs3(simd, x), abs3(simd, y));
+    let sizes = [simd.add(x[0], y[0]), simd.add(x[1], y[1]), simd.add(x[2], y[2])];
+    let size = simd.add(sizes[0], simd.add(sizes[1], sizes[2]));
+    let largest = simd.max(simd.max(simd.max(x[0], y[0]), simd.max(x[1], y[1])), simd.max(x[2], y[2]));
+    let unit = |n: f32| simd.splat(n * UNIT_ROUNDOFF);
+    let sheared_error = simd.add(simd.mul(unit(2.25), largest), simd.mul(unit(6.5), most));
+    let weight_error = simd.add(
+        simd.mul(sheared_error, simd.add(simd.mul(simd.splat(4.25), size), simd.mul(simd.splat(13.0), sheared_error))),
+        simd.add(simd.mul(unit(1.25), simd.mul(size, size)), simd.splat(LEAST_WEIGHT)),
+    );
+    let inverse_sum = simd.div(simd.splat(1.0), simd.add(simd.add(a, b), c));
+    let weighted = simd.add(simd.add(simd.mul(a, z[0]), simd.mul(b, z[1])), simd.mul(c, z[2]));
+    let depth = simd.mul(weighted, inverse_sum);
+    let moved = simd.mul(simd.mul(weight_error, abs(simd, inverse_sum)), simd.sub(farthest, nearest));
+    let depth_error = simd.add(simd.add(moved, simd.mul(unit(16.0), most)), simd.splat(LEAST_DEPTH));
+
+    let (first, last) = (simd.mul(nearest, inverse_depth), simd.mul(farthest, inverse_depth));
+    let slack = simd.add(
+        simd.mul(simd.splat(gamma(8)), simd.max(abs(simd, first), abs(simd, last))),
+        simd.splat(f32::MIN_POSITIVE),
+    );
+    let t = simd.mul(depth, inverse_depth);
+    let t_error = simd.mul(depth_error, abs(simd, inverse_depth));
+    // A NaN, from weights that are all zero, leaves the vertices' bounds.
+    Spans {
+        certain,
+        from: simd.max(simd.sub(t, t_error), simd.sub(simd.min(first, last), slack)),
+        to: simd.min(simd.add(t, t_error), simd.add(simd.max(first, last), slack)),
+    }
+}
+
+#[inline(always)]
+fn abs3<S: Simd>(simd: S, a: Corners<S>) -> Corners<S> {
+    [abs(simd, a[0]), abs(simd, a[1]), abs(simd, a[2])]
+}
+
+#[inline(always)]
+pub(super) fn abs<S: Simd>(simd: S, a: S::F32x8) -> S::F32x8 {
+    simd.and(a, simd.splat(f32::from_bits(i32::MAX as u32)))
+}
+
+#[inline(always)]
+fn from_origin<S: Simd>(simd: S, leaf: &Leaf<'_>, axis: usize, origin: f32) -> Corners<S> {
+    let origin = simd.splat(origin);
+    let [a, b, c] = leaf.rows(axis);
+    [simd.sub(simd.load(a), origin), simd.sub(simd.load(b), origin), simd.sub(simd.load(c), origin)]
+}
+
+#[inline(always)]
+pub(super) fn shear<S: Simd>(simd: S, row: Corners<S>, slope: S::F32x8, z: Corners<S>) -> Corners<S> {
+    [
+        simd.sub(row[0], simd.mul(slope, z[0])),
+        simd.sub(row[1], simd.mul(slope, z[1])),
+        simd.sub(row[2], simd.mul(slope, z[2])),
+    ]
+}
+
+/// `a * b - c * d`.
+#[inline(always)]
+fn edge<S: Simd>(simd: S, a: S::F32x8, b: S::F32x8, c: S::F32x8, d: S::F32x8) -> S::F32x8 {
+    simd.sub(simd.mul(a, b), simd.mul(c, d))
+}
