@@ -77,6 +77,10 @@ impl WideBvh {
         prefetch_lines::<4>(if child.is_leaf() { leaf } else { node });
     }
 
+    fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + self.leaves.bytes()
+    }
+
     pub(crate) fn shape(&self) -> Shape {
         Shape {
             reference_count: self.leaves.triangle_count(),

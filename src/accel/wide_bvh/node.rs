@@ -70,8 +70,10 @@ pub(super) struct WideNode {
 const _: () = assert!(size_of::<WideNode>() == 256);
 
 impl WideNode {
-    pub(super) const EMPTY: Self =
-        Self { planes: [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3], children: [Child(Child::LEAF); LANES] };
+    pub(super) const EMPTY: Self = Self {
+        planes: [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3],
+        children: [Child(Child::LEAF); LANES],
+    };
 
     /// The children's bits, to move as a register.
     #[inline(always)]

@@ -8,6 +8,7 @@
 //! 2015, "Efficient ray tracing kernels for modern CPU architectures", for the order of hits as keys.
 
 use std::marker::PhantomData;
+use std::time::Instant;
 
 use glam::Vec3A;
 
@@ -28,6 +29,10 @@ const IN_FLIGHT: usize = 32;
 /// The fewest rays of a run for which the wavefront's memory is asked for.
 const LEAST_RAYS: usize = 2 * IN_FLIGHT;
 
+/// Trees smaller than this are in a cache where single rays do not wait long: they take as long alone, or less (trees
+/// of 3 to 14 MB; at 43 MB the wavefront saves a fifth to a fourth).
+const LEAST_BYTES: usize = 24 << 20;
+
 /// Coordinates below this: products of three differences do not overflow `f32`.
 pub(super) const MOST_REACH: f32 = (1u64 << 39) as f32;
 
@@ -45,9 +50,19 @@ struct Source<'a, R, T, N> {
     answers: &'a mut [T],
     /// How many rays are left of those that were refused as packets.
     refused: usize,
-    /// How many rays to pass by after the next packet that is given up.
+    /// How many rays to pass by after the next packet that is given up, or does not pay.
     patience: usize,
+    /// Whether the refused rays go the same way all the same: such are faster one by one than in flight.
+    are_coherent: bool,
+    others: Pace,
     next_run: N,
+}
+
+/// How long rays take that no packet answers.
+struct Pace {
+    since: Instant,
+    rays: usize,
+    seconds_per_ray: f64,
 }
 
 impl<'a, R, T, N> Source<'a, R, T, N>
@@ -78,6 +93,7 @@ where
             {
                 (self.rays, self.answers) = (rays, answers);
                 self.refused = self.refused.saturating_sub(1);
+                self.others.rays += 1;
                 return Some((ray, answer));
             }
             if !self.next_run() {
@@ -86,32 +102,59 @@ where
         }
     }
 
-    /// The next rays if they look like a packet, and their places. Looks once at each group.
+    /// The next rays if they look like a packet, and their places. Looks once at each group, and first at how long
+    /// some rays take without.
     #[inline(always)]
     fn next_packet(&mut self, bounds: &Aabb) -> Option<(&'a [R; PACKET], Spread, &mut [T])> {
         if self.refused != 0 {
             return None;
         }
+        if self.others.rays != 0 {
+            self.others.seconds_per_ray = self.others.since.elapsed().as_secs_f64() / self.others.rays as f64;
+            self.others.rays = 0;
+        }
         if self.rays.is_empty() && !self.next_run() {
             return None;
         }
-        self.refused = PACKET;
+        (self.refused, self.are_coherent) = (PACKET, false);
         let rays = self.rays.first_chunk::<PACKET>()?;
         let spread = Spread::of_packet(rays, bounds)?;
+        self.refused = 0;
         Some((rays, spread, &mut self.answers[..PACKET]))
     }
 
-    /// After an attempt at a packet: goes past it, or leaves its rays and ever more of those that follow to the
-    /// wavefront.
+    /// After an attempt at a packet: goes past it if it was answered. If it was not, or took longer than its rays
+    /// would have alone, it leaves ever more of the rays that follow to the others.
     #[inline(always)]
-    fn end_packet(&mut self, is_answered: bool) {
+    fn end_packet(&mut self, is_answered: bool, start: Instant) {
+        let end = Instant::now();
         if is_answered {
             self.rays = &self.rays[PACKET..];
             self.answers = &mut std::mem::take(&mut self.answers)[PACKET..];
+        }
+        let seconds_per_ray = (end - start).as_secs_f64() / PACKET as f64;
+        if is_answered && seconds_per_ray < self.others.seconds_per_ray {
             (self.refused, self.patience) = (0, PACKET);
         } else {
             self.refused = self.patience;
             self.patience = (2 * self.patience).min(64 * PACKET);
+        }
+        self.are_coherent = true;
+        (self.others.since, self.others.rays) = (end, 0);
+    }
+
+    /// Answers the next rays in packets, as long as those pay.
+    #[inline(always)]
+    fn answer_packets<Q: Query, P: PrecisionMode, S: Simd>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh,
+        answer: &impl Fn(&mut T, Option<ClosestHit>),
+    ) {
+        while let Some((rays, spread, places)) = self.next_packet(&bvh.bounds) {
+            let start = Instant::now();
+            let is_answered = simd.vectorize(Packet::<Q, P, _, _, _>::new(bvh, rays, &spread, places, answer));
+            self.end_packet(is_answered, start);
         }
     }
 }
@@ -256,7 +299,17 @@ pub(super) struct Wavefront<'b, 'a, Q, P, R, T, N, A> {
 
 impl<'b, 'a, Q, P, R, T, N, A> Wavefront<'b, 'a, Q, P, R, T, N, A> {
     pub(super) fn new(bvh: &'b WideBvh, next_run: N, answer: A) -> Self {
-        let source = Source { rays: &[], answers: &mut [], refused: 0, patience: PACKET, next_run };
+        // The first rays show how long they take without packets.
+        let others = Pace { since: Instant::now(), rays: 0, seconds_per_ray: 0.0 };
+        let source = Source {
+            rays: &[],
+            answers: &mut [],
+            refused: PACKET,
+            patience: PACKET,
+            are_coherent: false,
+            others,
+            next_run,
+        };
         Self { bvh, source, answer, choices: PhantomData }
     }
 }
@@ -302,14 +355,20 @@ where
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { bvh, mut source, answer, .. } = self;
+        let (lower, upper) = (Vec3A::from(bvh.bounds.lower), Vec3A::from(bvh.bounds.upper));
+        let is_in_range = lower.abs().max(upper.abs()).max_element() < MOST_REACH;
         let mut memory = Vec::new();
-        // A run too short to pay for the wavefront's memory, or all of them where there is none to be had.
-        while !source.has_at_least(LEAST_RAYS)
+        // A tree or a run too small to pay for the wavefront, or all of them where there is no memory for it.
+        while bvh.bytes() < LEAST_BYTES
+            || !source.has_at_least(LEAST_RAYS)
             || bvh.depth as usize > MOST_LEVELS
             || memory.try_reserve_exact(IN_FLIGHT).is_err()
         {
-            for _ in 0..source.rays.len() {
-                let Some((ray, place)) = source.next() else { break };
+            while !source.rays.is_empty() {
+                if is_in_range {
+                    source.answer_packets::<Q, P, S>(simd, bvh, &answer);
+                }
+                let Some((ray, place)) = source.next() else { return };
                 simd.vectorize(Traversal::<Q, P, _, _>::new(bvh, ray, |found, _| answer(place, found)));
             }
             if !source.next_run() {
@@ -321,7 +380,6 @@ where
         let ray = Ray { origin: glam::Vec3::ZERO, t_min: 0.0, direction: glam::Vec3::X, t_max: 0.0 };
         let idle_ray = TriangleRay::new(&ray);
         let idle_hit = ClosestHit::none(&ray);
-        let (lower, upper) = (Vec3A::from(bvh.bounds.lower), Vec3A::from(bvh.bounds.upper));
         let mut flight = Flight {
             bvh,
             source,
@@ -333,7 +391,7 @@ where
             lists: [List { ids: [0; IN_FLIGHT], count: 0 }; LISTS],
             lower,
             upper,
-            is_in_range: lower.abs().max(upper.abs()).max_element() < MOST_REACH,
+            is_in_range,
         };
         for id in 0..IN_FLIGHT {
             if !flight.feed::<Q, P, S>(simd, id) {
@@ -363,15 +421,11 @@ where
     fn feed<Q: Query, P: PrecisionMode, S: Simd>(&mut self, simd: S, id: usize) -> bool {
         loop {
             if self.is_in_range {
-                while let Some((rays, spread, places)) = self.source.next_packet(&self.bvh.bounds) {
-                    let packet = Packet::<Q, P, _, _, _>::new(self.bvh, rays, &spread, places, &self.answer);
-                    let is_answered = simd.vectorize(packet);
-                    self.source.end_packet(is_answered);
-                }
+                self.source.answer_packets::<Q, P, S>(simd, self.bvh, &self.answer);
             }
             let Some((source, place)) = self.source.next() else { return false };
             let ray: Ray = source.into();
-            if self.is_in_range && is_fit(&ray) {
+            if self.is_in_range && !self.source.are_coherent && is_fit(&ray) {
                 self.start(id, &ray, place);
                 return true;
             }
