@@ -16,6 +16,7 @@ pub mod ffi;
 mod accel;
 mod geometry;
 mod math;
+mod memory;
 mod scene;
 mod simd;
 

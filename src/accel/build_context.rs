@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
+use crate::memory::prefer_huge_pages;
 use crate::simd::{DetectedIsa, Isa, Simd, SimdKernel};
 
 /// Why a build ended without a result.
@@ -106,6 +107,7 @@ impl<'a> BuildContext<'a> {
         }
         let mut vector = Vec::new();
         vector.try_reserve_exact(count).map_err(|_| BuildFailure::OutOfMemory { bytes })?;
+        prefer_huge_pages(vector.spare_capacity_mut());
         self.peak.fetch_max(held, Ordering::Relaxed);
         Ok(vector)
     }
