@@ -6,7 +6,7 @@
 //! operations must be `#[inline(always)]`, or registers travel through memory.
 #![expect(unsafe_code, reason = "the door to std::arch: intrinsics are called here and nowhere else")]
 
-/// [`Simd::vectorize`] and [`Simd::vectorize_build`] for a token that proves that the CPU has these features.
+/// [`Simd::vectorize`] and its like for a token that proves that the CPU has these features.
 #[cfg(target_arch = "x86_64")]
 macro_rules! frames {
     ($token:ty, $features:literal) => {
@@ -18,6 +18,17 @@ macro_rules! frames {
                 kernel.run(simd)
             }
             // SAFETY: the token proves that the CPU has them.
+            unsafe { frame(self, kernel) }
+        }
+
+        #[inline(always)]
+        fn vectorize_batch<K: SimdKernel>(self, kernel: K) -> K::Output {
+            #[target_feature(enable = $features)]
+            #[inline(never)]
+            fn frame<K: SimdKernel>(simd: $token, kernel: K) -> K::Output {
+                kernel.run(simd)
+            }
+            // SAFETY: as above.
             unsafe { frame(self, kernel) }
         }
 
@@ -72,7 +83,9 @@ pub(crate) trait Simd: Copy + Send + Sync {
     /// Runs a query's kernel where the compiler may use the instruction set, in a frame of its own, whose machine code
     /// `tests/hot_loops.rs` looks at.
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output;
-    /// As [`Simd::vectorize`] for what builds, which may call whatever it likes.
+    /// As [`Simd::vectorize`] for many rays, where calls once in a while do not show.
+    fn vectorize_batch<K: SimdKernel>(self, kernel: K) -> K::Output;
+    /// As [`Simd::vectorize`] for what builds, which is not looked at.
     fn vectorize_build<K: SimdKernel>(self, kernel: K) -> K::Output;
 
     fn splat(self, value: f32) -> Self::F32x8;

@@ -36,6 +36,15 @@ impl Simd for Scalar {
     }
 
     #[inline(always)]
+    fn vectorize_batch<K: SimdKernel>(self, kernel: K) -> K::Output {
+        #[inline(never)]
+        fn frame<K: SimdKernel>(simd: Scalar, kernel: K) -> K::Output {
+            kernel.run(simd)
+        }
+        frame(self, kernel)
+    }
+
+    #[inline(always)]
     fn vectorize_build<K: SimdKernel>(self, kernel: K) -> K::Output {
         kernel.run(self)
     }

@@ -126,6 +126,6 @@ impl<S: Simd> Accel for Vectorized<'_, S> {
         R: 'r,
         T: 'r,
     {
-        self.simd.vectorize(Wavefront::<Q, P, _, _, _, _>::new(self.bvh, next_run, answer));
+        self.simd.vectorize_batch(Wavefront::<Q, P, _, _, _, _>::new(self.bvh, next_run, answer));
     }
 }

@@ -153,7 +153,7 @@ where
     ) {
         while let Some((rays, spread, places)) = self.next_packet(&bvh.bounds) {
             let start = Instant::now();
-            let is_answered = simd.vectorize(Packet::<Q, P, _, _, _>::new(bvh, rays, &spread, places, answer));
+            let is_answered = simd.vectorize_batch(Packet::<Q, P, _, _, _>::new(bvh, rays, &spread, places, answer));
             self.end_packet(is_answered, start);
         }
     }
