@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn node_reference_holds_its_index_at_its_limits() {
-        for index in [0, 1, Child::MOST_TRIANGLES, (1 << 31) - 1] {
+        for index in [0, 1, Child::MOST_TRIANGLES, (1 << 31) - 2] {
             let child = Child::node(index);
             assert!(!child.is_leaf());
             assert_eq!(child.node_index(), index);
