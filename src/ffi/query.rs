@@ -30,7 +30,7 @@ pub unsafe extern "C-unwind" fn gnomon_intersect(
         // SAFETY: the caller's promise.
         let hit_out = unsafe { output(hit_out, "hit_out") }?;
         Ok(scene.0.intersect_then(ray, |hit| {
-            hit_out.write(hit.into());
+            GnomonHit::write(&hit, hit_out);
             hit.is_hit()
         }))
     })

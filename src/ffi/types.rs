@@ -1,8 +1,9 @@
 //! Rays, hits, meshes, and what a scene tells about itself, as C sees them.
 
 use std::ffi::c_void;
+use std::mem::{MaybeUninit, offset_of};
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use crate::accel::RayCounts;
 use crate::geometry::{Hit, Ray};
@@ -161,6 +162,25 @@ impl From<Hit> for GnomonHit {
         }
     }
 }
+
+impl GnomonHit {
+    /// In three stores: a caller who copies the hit at once loads 16 bytes at a time, and a load that spans several stores
+    /// waits until they have left for the cache.
+    #[inline(always)]
+    pub(super) fn write(hit: &Hit, out: &mut MaybeUninit<Self>) {
+        let [x, y, z] = hit.normal.to_array();
+        let ids = [hit.primitive_id, hit.geometry_id].map(f32::from_bits);
+        let parts = [Vec4::new(hit.t, hit.u, hit.v, x), Vec4::new(y, z, ids[0], ids[1])];
+        let out = out.as_mut_ptr();
+        // SAFETY: `out` has room for 36 bytes; these are its first eight values and the last.
+        unsafe {
+            out.cast::<[Vec4; 2]>().write_unaligned(parts);
+            (&raw mut (*out).instance_id).write(hit.instance_id);
+        }
+    }
+}
+
+const _: () = assert!(offset_of!(GnomonHit, normal) == 12 && offset_of!(GnomonHit, instance_id) == 32);
 
 impl From<RayCounts> for GnomonRayCounts {
     fn from(counts: RayCounts) -> Self {

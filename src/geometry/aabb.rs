@@ -118,10 +118,10 @@ impl SlabRay {
 }
 
 /// A [`SlabRay`] for rays of which no direction component is zero, or as good as zero, or beyond 2^60, as nearly all
-/// are. They need no scaling. A plane is met at `plane * inverse - offset`, fused or not.
+/// are, and no `t_min` below 0. They need no scaling. A plane is met at `plane * inverse + offset`, fused or not.
 ///
-/// `origin * inverse` and its sum with the slack round once each, before they cancel against the plane's product:
-/// `gamma(4)` of it covers that.
+/// The origin's sum with the slack, its product and the plane's round once each, before they cancel: `gamma(4)` of the
+/// origin covers that.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ObliqueSlabs {
     pub(crate) inverse: Vec4,
@@ -131,6 +131,8 @@ pub(crate) struct ObliqueSlabs {
     pub(crate) far_offset: Vec4,
     /// Bit `i` where the direction is negative along axis `i`, so that the upper plane is the near one.
     pub(crate) negative: u32,
+    /// Of the ray; not negative, nor negative zero.
+    pub(crate) t_min: f32,
 }
 
 impl ObliqueSlabs {
@@ -144,18 +146,20 @@ impl ObliqueSlabs {
         let reach = (*upper - origin).max(origin - *lower);
         // Comparisons with a NaN are false.
         let is_oblique = direction.abs().max(inverse.abs()).cmplt(MOST) & reach.cmplt(MOST);
-        if !(is_oblique.all() & (ray.t_min <= ray.t_max)) {
+        if !(is_oblique.all() & (0.0 <= ray.t_min) & (ray.t_min <= ray.t_max)) {
             return None;
         }
         let reach = reach.max(reach.yzzz()).max(reach.zzzz()).x;
         let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
-        let offset = origin * inverse;
-        let slack = inverse.abs() * slack_distance + offset.abs() * gamma(4);
+        // Whichever plane is the near one, as seen from a little further on; the far one from a little before.
+        let slack = (Vec4::splat(slack_distance) + origin.abs() * gamma(4)).copysign(direction);
         Some(Self {
             inverse,
-            near_offset: offset + slack,
-            far_offset: offset - slack,
-            negative: direction.cmplt(Vec4::ZERO).bitmask(),
+            near_offset: -inverse * (origin + slack),
+            far_offset: -inverse * (origin - slack),
+            negative: direction.is_negative_bitmask(),
+            // Of two zeros the positive one.
+            t_min: ray.t_min + 0.0,
         })
     }
 }

@@ -2,11 +2,10 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use glam::{DVec4, Vec4Swizzles};
-
 use super::Triangle;
 use super::triangle_hit::{Corners, TriangleHit, TriangleRay, edge_functions, signs};
 use crate::math::DoubleDouble;
+use crate::simd::Simd;
 
 /// The number types that a hit is evaluated in.
 pub(super) trait Real: Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
@@ -64,36 +63,38 @@ impl Evaluation {
     /// The same with coarser bounds: `s` is the sum over all three vertices, and `m |dz| <= s + |dz| max |az|`, because
     /// `ax dz = x + dx az` and `|dx| <= |dz|`.
     #[inline(always)]
-    pub(super) fn inside(ray: &TriangleRay, corners: &Corners) -> Option<Self> {
+    pub(super) fn inside<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Self> {
         const E: f64 = f64::UNIT_ROUNDOFF;
         let [kx, ky, kz] = ray.axes;
-        let wide = |values: &[f32; 4], axis: usize| f64::from(values[axis & 3]);
-        let (dx, dy, dz) = (wide(&ray.direction, kx), wide(&ray.direction, ky), wide(&ray.direction, kz));
-        // A lane a vertex; the fourth repeats the first one.
-        let ax = from_origin(&corners[0], wide(&ray.origin, kx));
-        let ay = from_origin(&corners[1], wide(&ray.origin, ky));
-        let az = from_origin(&corners[2], wide(&ray.origin, kz));
-        let x = ax * dz - az * dx;
-        let y = ay * dz - az * dy;
-        let weights = x.zxyz() * y.yzxy() - y.zxyz() * x.yzxy();
+        let splat = |values: &[f32; 4], axis: usize| simd.splat3(values[axis & 3]);
+        let (dx, dy, dz) = (splat(&ray.direction, kx), splat(&ray.direction, ky), splat(&ray.direction, kz));
+        // A lane a vertex.
+        let ax = simd.sub3(simd.widen3(corners[0]), splat(&ray.origin, kx));
+        let ay = simd.sub3(simd.widen3(corners[1]), splat(&ray.origin, ky));
+        let az = simd.sub3(simd.widen3(corners[2]), splat(&ray.origin, kz));
+        let x = simd.sub3(simd.mul3(ax, dz), simd.mul3(az, dx));
+        let y = simd.sub3(simd.mul3(ay, dz), simd.mul3(az, dy));
+        let first = simd.mul3(simd.third_first(x), simd.second_first(y));
+        let weights = simd.sub3(first, simd.mul3(simd.third_first(y), simd.second_first(x)));
 
-        let size = x.abs() + y.abs();
-        let size = size.x + size.y + size.z;
-        let depth = az.abs();
-        let depth = greater(greater(depth.x, depth.y), depth.z);
+        let [a, b, c] = simd.values3(simd.add3(simd.abs3(x), simd.abs3(y)));
+        let size = a + b + c;
+        let [a, b, c] = simd.values3(simd.abs3(az));
+        let depth = greater(greater(a, b), c);
+        let dz = f64::from(ray.direction[kz & 3]);
         let reach = 16.0 * E * (size + depth * dz.abs());
         let bound = reach * (size + reach);
-        let sum = weights.x + weights.y + weights.z;
-        let is_inside = weights.cmpgt(DVec4::splat(bound)).all() | weights.cmplt(DVec4::splat(-bound)).all();
-        if !is_inside || 3.0 * bound > RELATIVE_ERROR * sum.abs() {
+        let [a, b, c] = simd.values3(weights);
+        let sum = a + b + c;
+        if !simd.beyond3(weights, bound) || 3.0 * bound > RELATIVE_ERROR * sum.abs() {
             return None;
         }
-        let weighted = weights * az;
-        let weighted = weighted.x + weighted.y + weighted.z;
+        let [az, bz, cz] = simd.values3(simd.mul3(weights, az));
+        let weighted = az + bz + cz;
         let inverse = 1.0 / (sum * dz);
         let t = weighted * inverse;
         let per_sum = dz * inverse;
-        let hit = TriangleHit { t: t as f32, u: (weights.y * per_sum) as f32, v: (weights.z * per_sum) as f32 };
+        let hit = TriangleHit { t: t as f32, u: (b * per_sum) as f32, v: (c * per_sum) as f32 };
         let t_bound = (6.0 * bound + 5.0 * E * sum.abs()) * depth;
         if t_bound > RELATIVE_ERROR * weighted.abs() {
             return Some(Self::Near { hit, t, t_error: 2.0 * t_bound * inverse.abs(), t_per_volume: -dz / sum });
@@ -168,11 +169,6 @@ impl Evaluation {
         }
         Self::Inside(hit)
     }
-}
-
-#[inline(always)]
-fn from_origin([a, b, c]: &[f32; 3], origin: f64) -> DVec4 {
-    DVec4::new(f64::from(*a), f64::from(*b), f64::from(*c), f64::from(*a)) - origin
 }
 
 /// Without `f64::max`'s care for NaN.

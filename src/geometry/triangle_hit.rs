@@ -19,6 +19,7 @@ use glam::Vec4;
 use super::evaluation::Evaluation;
 use super::{Ray, Triangle};
 use crate::math::DoubleDouble;
+use crate::simd::{Scalar, Simd};
 
 /// What a triangle test found. `t` is finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +29,9 @@ pub(crate) struct TriangleHit {
     pub(crate) v: f32,
 }
 
-/// A ray made ready for triangle tests.
+/// A ray made ready for triangle tests. Aligned, so that none of its vectors crosses a cache line.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(16))]
 pub(crate) struct TriangleRay {
     /// 0 in the fourth lane.
     pub(crate) origin: [f32; 4],
@@ -82,11 +84,14 @@ pub(crate) trait PrecisionMode {
         interval: Interval,
     ) -> Option<TriangleHit>;
 
-    /// What `evaluate` makes its answer of, where that does not need the sheared coordinates.
-    fn evaluate_certain(ray: &TriangleRay, corners: &Corners) -> Option<Evaluation>;
+    /// The hit of a triangle whose `f32` edge functions have one sign, none zero, where those are all that it takes.
+    fn evaluate_sheared(ray: &TriangleRay, sheared: &Weights<f32>, z: &[f32; 3]) -> Option<TriangleHit>;
+
+    /// For such a triangle what the answer is made of, where that does not need more.
+    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Evaluation>;
 }
 
-/// From the coordinates that decided: off by as much as those are.
+/// From the coordinates that decided, in `f32`: off by as much as those are.
 pub(crate) struct Fast;
 
 /// From the ray and the triangle themselves, in `f64` or, where that is not provably enough, in twice its precision.
@@ -96,30 +101,24 @@ impl TriangleRay {
     /// Expects a valid ray.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        /// The other axes for each that may be the main one; the fourth is none.
-        static NEXT: [u8; 4] = [1, 2, 0, 0];
-        static AFTER_NEXT: [u8; 4] = [2, 0, 1, 0];
-
+        // The bits of magnitudes have their order; of equal components the first is taken, so that the choice is the same
+        // everywhere. Without a branch, which no CPU could foresee.
+        let magnitude = |value: f32| value.to_bits() & !(1 << 31);
+        let [x, y, z] = [magnitude(ray.direction.x), magnitude(ray.direction.y), magnitude(ray.direction.z)];
+        let (is_y, is_z) = (usize::from(y > x), usize::from(z > x.max(y)));
+        let kz = 2 * is_z + (is_y & !is_z);
+        // Two bits for each axis: the next one, and the one after that.
+        let (kx, ky) = (0b00_10_01 >> (2 * kz) & 3, 0b01_00_10 >> (2 * kz) & 3);
         // Four lanes at a time, and one store for each: a load that is wider than the stores before it waits for them.
         let (origin, direction) = (ray.origin.extend(0.0), ray.direction.extend(1.0));
-        let magnitude = direction.abs();
-        let largest = greater(greater(magnitude.x, magnitude.y), magnitude.z);
-        // The first of equal components, so that the choice is the same everywhere.
-        let kz = (magnitude.cmpge(Vec4::splat(largest)).bitmask().trailing_zeros() & 3) as usize;
-        let (kx, ky) = (usize::from(NEXT[kz]), usize::from(AFTER_NEXT[kz]));
-        let per_z = direction / Vec4::splat(direction.to_array()[kz]);
+        let per_z = direction / Vec4::splat(direction.to_array()[kz & 3]);
         Self { origin: origin.to_array(), direction: direction.to_array(), axes: [kx, ky, kz], per_z: per_z.to_array() }
     }
 
     /// The closed triangle against the closed interval of the line.
     #[inline(always)]
     pub(crate) fn hit<P: PrecisionMode>(&self, triangle: &Triangle, interval: Interval) -> Option<TriangleHit> {
-        let [kx, ky, kz] = self.axes;
-        let from_origin = |axis: usize| triangle.axes[axis].map(|v| v - self.origin[axis]);
-        let z = from_origin(kz);
-        let shear = |row: [f32; 3], slope: f32| std::array::from_fn(|corner| row[corner] - slope * z[corner]);
-        let x: [f32; 3] = shear(from_origin(kx), self.per_z[kx]);
-        let y: [f32; 3] = shear(from_origin(ky), self.per_z[ky]);
+        let (x, y, z) = self.shear(&self.corners(triangle));
 
         // Rounding keeps order, so the difference of two rounded products never has the wrong sign: it can only be
         // zero, or NaN where both overflowed. A nonzero sign settles it here; the rest is settled in f64, where these
@@ -129,8 +128,13 @@ impl TriangleRay {
         if any_negative && any_positive {
             return None;
         }
+        if edges.iter().all(|edge| *edge != 0.0)
+            && let Some(hit) = P::evaluate_sheared(self, &edges, &z)
+        {
+            return Some(hit).filter(|hit| interval.contains(hit.t));
+        }
         // A hit's t lies between those of its vertices.
-        let is_behind = z.iter().all(|z| z / self.direction[kz] < 0.0);
+        let is_behind = z.iter().all(|z| z / self.direction[self.axes[2]] < 0.0);
         if is_behind && interval.t_min >= 0.0 {
             return None;
         }
@@ -140,13 +144,14 @@ impl TriangleRay {
     /// [`TriangleRay::hit`] for a triangle whose `f32` edge functions have one sign, none zero: it is taken for hit,
     /// and what remains to tell is where.
     #[inline(always)]
-    pub(crate) fn certain_hit<P: PrecisionMode>(
+    pub(crate) fn certain_hit<P: PrecisionMode, S: Simd>(
         &self,
+        simd: S,
         corners: &Corners,
         interval: Interval,
         triangle: impl FnOnce() -> Triangle,
     ) -> Option<TriangleHit> {
-        match P::evaluate_certain(self, corners) {
+        match P::evaluate_certain(simd, self, corners) {
             Some(Evaluation::Inside(hit)) => interval.contains(hit.t).then_some(hit),
             Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
             _ => self.hit_slowly::<P>(&triangle(), interval),
@@ -157,6 +162,18 @@ impl TriangleRay {
     #[inline(never)]
     fn hit_slowly<P: PrecisionMode>(&self, triangle: &Triangle, interval: Interval) -> Option<TriangleHit> {
         self.hit::<P>(triangle, interval)
+    }
+
+    /// Relative to the origin, so that the ray is the axis of z.
+    #[inline(always)]
+    fn shear(&self, corners: &Corners) -> ([f32; 3], [f32; 3], [f32; 3]) {
+        let [kx, ky, kz] = self.axes.map(|axis| axis & 3);
+        let from_origin = |[a, b, c]: [f32; 3], origin: f32| [a - origin, b - origin, c - origin];
+        let z = from_origin(corners[2], self.origin[kz]);
+        let shear = |[a, b, c]: [f32; 3], slope: f32| [a - slope * z[0], b - slope * z[1], c - slope * z[2]];
+        let x = shear(from_origin(corners[0], self.origin[kx]), self.per_z[kx]);
+        let y = shear(from_origin(corners[1], self.origin[ky]), self.per_z[ky]);
+        (x, y, z)
     }
 
     #[inline(always)]
@@ -199,6 +216,19 @@ impl TriangleRay {
 impl PrecisionMode for Fast {
     const HAS_LANES: bool = false;
 
+    /// Relative to the first vertex, so that most of `t` is not multiplied by anything that is off.
+    #[inline(always)]
+    fn evaluate_sheared(ray: &TriangleRay, [a, b, c]: &Weights<f32>, z: &[f32; 3]) -> Option<TriangleHit> {
+        let per_sum = 1.0 / (a + b + c);
+        let (u, v) = (b * per_sum, c * per_sum);
+        let between = z[0] + (u * (z[1] - z[0]) + v * (z[2] - z[0]));
+        // Rounding does not lead out of the triangle, or its box could be passed over.
+        let (least, most) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
+        let t = between.max(least).min(most) / ray.direction[ray.axes[2] & 3];
+        // Not where something was beyond the range of `f32`.
+        (t.is_finite() & u.is_finite() & v.is_finite()).then_some(TriangleHit { t, u, v })
+    }
+
     fn evaluate(
         ray: &TriangleRay,
         triangle: &Triangle,
@@ -209,13 +239,19 @@ impl PrecisionMode for Fast {
     }
 
     #[inline(always)]
-    fn evaluate_certain(_ray: &TriangleRay, _corners: &Corners) -> Option<Evaluation> {
-        None
+    fn evaluate_certain<S: Simd>(_simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Evaluation> {
+        let (x, y, z) = ray.shear(corners);
+        Self::evaluate_sheared(ray, &edge_functions(&x, &y), &z).map(Evaluation::Inside)
     }
 }
 
 impl PrecisionMode for Accurate {
     const HAS_LANES: bool = true;
+
+    #[inline(always)]
+    fn evaluate_sheared(_ray: &TriangleRay, _sheared: &Weights<f32>, _z: &[f32; 3]) -> Option<TriangleHit> {
+        None
+    }
 
     fn evaluate(
         ray: &TriangleRay,
@@ -223,7 +259,9 @@ impl PrecisionMode for Accurate {
         sheared: &Weights<f64>,
         interval: Interval,
     ) -> Option<TriangleHit> {
-        match Evaluation::inside(ray, &ray.corners(triangle)).unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle)) {
+        match Evaluation::inside(Scalar, ray, &ray.corners(triangle))
+            .unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle))
+        {
             Evaluation::Inside(hit) => Some(hit),
             Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => None,
             Evaluation::Outside => Some(within_the_band(ray, triangle, sheared)),
@@ -235,8 +273,8 @@ impl PrecisionMode for Accurate {
     }
 
     #[inline(always)]
-    fn evaluate_certain(ray: &TriangleRay, corners: &Corners) -> Option<Evaluation> {
-        Evaluation::inside(ray, corners)
+    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Evaluation> {
+        Evaluation::inside(simd, ray, corners)
     }
 }
 
@@ -271,12 +309,6 @@ fn within_the_band(ray: &TriangleRay, triangle: &Triangle, sheared: &Weights<f64
 #[inline(always)]
 pub(super) fn edge_functions<T: Copy + Sub<Output = T> + Mul<Output = T>>(x: &[T; 3], y: &[T; 3]) -> Weights<T> {
     [x[2] * y[1] - y[2] * x[1], x[0] * y[2] - y[0] * x[2], x[1] * y[0] - y[1] * x[0]]
-}
-
-/// Without `f32::max`'s care for NaN.
-#[inline(always)]
-fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// Whether any is below zero, and whether any is above. A NaN is neither.

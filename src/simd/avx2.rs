@@ -22,6 +22,7 @@ impl Avx2 {
 
 impl Simd for Avx2 {
     type F32x8 = __m256;
+    type F64x3 = __m256d;
 
     frames!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 
@@ -49,12 +50,6 @@ impl Simd for Avx2 {
     fn div(self, a: __m256, b: __m256) -> __m256 {
         // SAFETY: the token proves that the CPU has AVX.
         unsafe { _mm256_div_ps(a, b) }
-    }
-
-    #[inline(always)]
-    fn abs(self, a: __m256) -> __m256 {
-        // SAFETY: the token proves that the CPU has AVX.
-        unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a) }
     }
 
     #[inline(always)]
@@ -121,6 +116,75 @@ impl Simd for Avx2 {
     fn or(self, a: __m256, b: __m256) -> __m256 {
         // SAFETY: the token proves that the CPU has AVX.
         unsafe { _mm256_or_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn splat3(self, value: f32) -> __m256d {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_cvtps_pd(_mm_set1_ps(value)) }
+    }
+
+    #[inline(always)]
+    fn widen3(self, [x, y, z]: [f32; 3]) -> __m256d {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_cvtps_pd(_mm_setr_ps(x, y, z, x)) }
+    }
+
+    #[inline(always)]
+    fn add3(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_add_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn sub3(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_sub_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn mul3(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_mul_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn abs3(self, a: __m256d) -> __m256d {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a) }
+    }
+
+    #[inline(always)]
+    fn second_first(self, a: __m256d) -> __m256d {
+        // SAFETY: the token proves that the CPU has AVX2.
+        unsafe { _mm256_permute4x64_pd::<0b01_00_10_01>(a) }
+    }
+
+    #[inline(always)]
+    fn third_first(self, a: __m256d) -> __m256d {
+        // SAFETY: the token proves that the CPU has AVX2.
+        unsafe { _mm256_permute4x64_pd::<0b10_01_00_10>(a) }
+    }
+
+    #[inline(always)]
+    fn values3(self, a: __m256d) -> [f64; 3] {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe {
+            let low = _mm256_castpd256_pd128(a);
+            let high = _mm256_extractf128_pd::<1>(a);
+            [_mm_cvtsd_f64(low), _mm_cvtsd_f64(_mm_unpackhi_pd(low, low)), _mm_cvtsd_f64(high)]
+        }
+    }
+
+    #[inline(always)]
+    fn beyond3(self, a: __m256d, bound: f64) -> bool {
+        // SAFETY: the token proves that the CPU has AVX.
+        let (is_beyond, is_negative) = unsafe {
+            let is_beyond = _mm256_cmp_pd::<_CMP_GT_OQ>(self.abs3(a), _mm256_set1_pd(bound));
+            (_mm256_movemask_pd(is_beyond), _mm256_movemask_pd(a))
+        };
+        // No bit of the sum is left where all signs are equal.
+        (is_beyond ^ 0xF) | ((is_negative + 1) & 0xE) == 0
     }
 
     /// Each half by the optimal network for four, one of them ascending, then a bitonic merge, so that lanes change

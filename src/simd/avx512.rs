@@ -31,6 +31,7 @@ macro_rules! as_avx2 {
 
 impl Simd for Avx512 {
     type F32x8 = __m256;
+    type F64x3 = __m256d;
 
     frames!(Avx512, "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw");
 
@@ -42,13 +43,22 @@ impl Simd for Avx512 {
         fn sub(a: __m256, b: __m256) -> __m256;
         fn mul(a: __m256, b: __m256) -> __m256;
         fn div(a: __m256, b: __m256) -> __m256;
-        fn abs(a: __m256) -> __m256;
         fn and(a: __m256, b: __m256) -> __m256;
         fn or(a: __m256, b: __m256) -> __m256;
         fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256;
         fn mul_sub(a: __m256, b: __m256, c: __m256) -> __m256;
         fn min(a: __m256, b: __m256) -> __m256;
         fn max(a: __m256, b: __m256) -> __m256;
+        fn splat3(value: f32) -> __m256d;
+        fn widen3(values: [f32; 3]) -> __m256d;
+        fn add3(a: __m256d, b: __m256d) -> __m256d;
+        fn sub3(a: __m256d, b: __m256d) -> __m256d;
+        fn mul3(a: __m256d, b: __m256d) -> __m256d;
+        fn abs3(a: __m256d) -> __m256d;
+        fn second_first(a: __m256d) -> __m256d;
+        fn third_first(a: __m256d) -> __m256d;
+        fn values3(a: __m256d) -> [f64; 3];
+        fn beyond3(a: __m256d, bound: f64) -> bool;
     }
 
     #[inline(always)]

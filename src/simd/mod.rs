@@ -45,6 +45,61 @@ macro_rules! frames {
     };
 }
 
+/// Doubles on plain arrays.
+macro_rules! plain_doubles {
+    () => {
+        #[inline(always)]
+        fn splat3(self, value: f32) -> [f64; 3] {
+            [f64::from(value); 3]
+        }
+
+        #[inline(always)]
+        fn widen3(self, [x, y, z]: [f32; 3]) -> [f64; 3] {
+            [f64::from(x), f64::from(y), f64::from(z)]
+        }
+
+        #[inline(always)]
+        fn add3(self, a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+            [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+        }
+
+        #[inline(always)]
+        fn sub3(self, a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+            [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+        }
+
+        #[inline(always)]
+        fn mul3(self, a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+            [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
+        }
+
+        #[inline(always)]
+        fn abs3(self, a: [f64; 3]) -> [f64; 3] {
+            [a[0].abs(), a[1].abs(), a[2].abs()]
+        }
+
+        #[inline(always)]
+        fn second_first(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+            [y, z, x]
+        }
+
+        #[inline(always)]
+        fn third_first(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+            [z, x, y]
+        }
+
+        #[inline(always)]
+        fn values3(self, a: [f64; 3]) -> [f64; 3] {
+            a
+        }
+
+        #[inline(always)]
+        fn beyond3(self, [x, y, z]: [f64; 3], bound: f64) -> bool {
+            (x > bound) & (y > bound) & (z > bound) | (x < -bound) & (y < -bound) & (z < -bound)
+        }
+    };
+}
+
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -79,6 +134,8 @@ pub(crate) trait SimdKernel {
 /// Operations on eight floats, each rounded once like the scalar one. Masks have bit `i` for lane `i`.
 pub(crate) trait Simd: Copy + Send + Sync {
     type F32x8: Copy;
+    /// Of three values each, with the first one again in the fourth lane.
+    type F64x3: Copy;
 
     /// Runs a query's kernel where the compiler may use the instruction set, in a frame of its own, whose machine code
     /// `tests/hot_loops.rs` looks at.
@@ -95,7 +152,6 @@ pub(crate) trait Simd: Copy + Send + Sync {
     fn sub(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     fn mul(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     fn div(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
-    fn abs(self, a: Self::F32x8) -> Self::F32x8;
     /// `a * b + c`, rounded once or twice: for bounds, where a rounding more or less does not show.
     fn mul_add(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
     /// `a * b - c`, as [`Simd::mul_add`].
@@ -113,6 +169,21 @@ pub(crate) trait Simd: Copy + Send + Sync {
     fn and(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// Of the bits.
     fn or(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+
+    /// One value in all lanes.
+    fn splat3(self, value: f32) -> Self::F64x3;
+    fn widen3(self, values: [f32; 3]) -> Self::F64x3;
+    fn add3(self, a: Self::F64x3, b: Self::F64x3) -> Self::F64x3;
+    fn sub3(self, a: Self::F64x3, b: Self::F64x3) -> Self::F64x3;
+    fn mul3(self, a: Self::F64x3, b: Self::F64x3) -> Self::F64x3;
+    fn abs3(self, a: Self::F64x3) -> Self::F64x3;
+    /// The second value first, then the third and the first.
+    fn second_first(self, a: Self::F64x3) -> Self::F64x3;
+    /// The third value first, then the first and the second.
+    fn third_first(self, a: Self::F64x3) -> Self::F64x3;
+    fn values3(self, a: Self::F64x3) -> [f64; 3];
+    /// Whether all are above `bound`, which is not negative, or all below its negative; not where one is NaN.
+    fn beyond3(self, a: Self::F64x3, bound: f64) -> bool;
 
     /// Descending, the bits taken for signed integers: floats that are not negative in their order, negative ones
     /// after them in any.

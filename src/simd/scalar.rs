@@ -24,6 +24,7 @@ fn mask(a: [f32; LANES], b: [f32; LANES], holds: impl Fn(f32, f32) -> bool) -> u
 
 impl Simd for Scalar {
     type F32x8 = [f32; LANES];
+    type F64x3 = [f64; 3];
 
     #[inline(always)]
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
@@ -48,6 +49,8 @@ impl Simd for Scalar {
     fn vectorize_build<K: SimdKernel>(self, kernel: K) -> K::Output {
         kernel.run(self)
     }
+
+    plain_doubles!();
 
     #[inline(always)]
     fn splat(self, value: f32) -> [f32; LANES] {
@@ -82,11 +85,6 @@ impl Simd for Scalar {
     #[inline(always)]
     fn div(self, a: [f32; LANES], b: [f32; LANES]) -> [f32; LANES] {
         lanewise(a, b, |a, b| a / b)
-    }
-
-    #[inline(always)]
-    fn abs(self, a: [f32; LANES]) -> [f32; LANES] {
-        a.map(f32::abs)
     }
 
     #[inline(always)]

@@ -28,8 +28,11 @@ fn mask(bits: [__m128; 2]) -> u32 {
 
 impl Simd for Sse42 {
     type F32x8 = [__m128; 2];
+    type F64x3 = [f64; 3];
 
     frames!(Sse42, "sse4.2");
+
+    plain_doubles!();
 
     #[inline(always)]
     fn splat(self, value: f32) -> [__m128; 2] {
@@ -58,14 +61,6 @@ impl Simd for Sse42 {
     fn div(self, a: [__m128; 2], b: [__m128; 2]) -> [__m128; 2] {
         // SAFETY: SSE is part of x86-64.
         halves(a, b, |a, b| unsafe { _mm_div_ps(a, b) })
-    }
-
-    #[inline(always)]
-    fn abs(self, a: [__m128; 2]) -> [__m128; 2] {
-        // SAFETY: SSE is part of x86-64.
-        let sign = unsafe { _mm_set1_ps(-0.0) };
-        // SAFETY: as above.
-        halves(a, [sign; 2], |a, sign| unsafe { _mm_andnot_ps(sign, a) })
     }
 
     #[inline(always)]

@@ -91,6 +91,50 @@ fn arrangements<S: Simd>(simd: S) -> Vec<u32> {
     simd.vectorize(All)
 }
 
+/// The results of all operations on doubles, as bits, a NaN as one number.
+fn doubles<S: Simd>(simd: S) -> Vec<u64> {
+    struct All;
+    impl SimdKernel for All {
+        type Output = Vec<u64>;
+
+        fn run<S: Simd>(self, simd: S) -> Vec<u64> {
+            let mut results = Vec::new();
+            for first in VALUES {
+                for second in VALUES {
+                    let (a, b) = (simd.widen3([first, second, 1.5]), simd.widen3([second, -2.75, first]));
+                    let values = [
+                        simd.splat3(first),
+                        simd.add3(a, b),
+                        simd.sub3(a, b),
+                        simd.mul3(a, b),
+                        simd.abs3(a),
+                        simd.second_first(a),
+                        simd.third_first(a),
+                    ];
+                    for value in values.into_iter().flat_map(|values| simd.values3(values)) {
+                        results.push(if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() });
+                    }
+                    for bound in [0.0, 1.0, 1.5, f64::INFINITY, f64::NAN] {
+                        results.push(u64::from(simd.beyond3(a, bound)));
+                    }
+                }
+            }
+            results
+        }
+    }
+    simd.vectorize(All)
+}
+
+#[test]
+fn doubles_are_beyond_a_bound_on_one_side_together() {
+    let beyond = |values: [f32; 3], bound| Scalar.beyond3(Scalar.widen3(values), bound);
+    assert!(beyond([2.0, 3.0, 4.0], 1.0) && beyond([-2.0, -3.0, -4.0], 1.0));
+    for values in [[2.0, -3.0, 4.0], [-2.0, -3.0, 4.0], [2.0, 1.0, 4.0], [2.0, f32::NAN, 4.0], [0.0, 0.0, 0.0]] {
+        assert!(!beyond(values, 1.0), "{values:?}");
+    }
+    assert!(!beyond([2.0, 3.0, 4.0], f64::NAN));
+}
+
 /// `a * b - c` for operands of which the fused and the two-step result are equal.
 fn exact_mul_sub<S: Simd>(simd: S) -> [f32; LANES] {
     struct MulSub;
@@ -114,16 +158,19 @@ fn every_instruction_set_computes_what_the_scalar_one_does() {
     {
         if let Some(simd) = Sse42::detect() {
             assert_eq!(results(simd), results(Scalar), "SSE4.2");
+            assert_eq!(doubles(simd), doubles(Scalar), "SSE4.2");
             assert_eq!(arrangements(simd), arrangements(Scalar), "SSE4.2");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
         if let Some(simd) = Avx2::detect() {
             assert_eq!(results(simd), results(Scalar), "AVX2");
+            assert_eq!(doubles(simd), doubles(Scalar), "AVX2");
             assert_eq!(arrangements(simd), arrangements(Scalar), "AVX2");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
         if let Some(simd) = Avx512::detect() {
             assert_eq!(results(simd), results(Scalar), "AVX-512");
+            assert_eq!(doubles(simd), doubles(Scalar), "AVX-512");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
     }

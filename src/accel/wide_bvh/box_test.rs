@@ -6,34 +6,71 @@ use super::node::WideNode;
 use crate::geometry::{ObliqueSlabs, SlabRay};
 use crate::simd::{LANES, Simd};
 
-/// Eight boxes against a ray: the slots that it meets, and where it enters each.
-pub(super) trait BoxTest<S: Simd> {
+/// A ray as box tests want it, to be kept in memory.
+pub(super) trait Boxes {
+    type Prepared<S: Simd>: BoxTest<S>;
+
     /// Box distances count in lengths of the scaled direction: multiply a `t` by this.
     fn scale_time(&self, t: f32) -> f32;
-    fn test(&self, simd: S, node: &WideNode, t_min: S::F32x8, t_max: f32) -> (u32, S::F32x8);
+    /// Has the order of the distances that there can be.
+    fn order(distance: f32) -> u32;
+    /// In registers.
+    fn prepare<S: Simd>(&self, simd: S) -> Self::Prepared<S>;
 }
 
-/// `plane * inverse - offset`: one operation a plane.
-pub(super) struct Oblique<S: Simd> {
+/// Eight boxes against a ray: the slots that it meets by `t_max`, a scaled length, and where it enters each.
+pub(super) trait BoxTest<S: Simd> {
+    fn test(&self, simd: S, node: &WideNode, t_max: f32) -> (u32, S::F32x8);
+}
+
+/// `plane * inverse + offset`: one operation a plane.
+pub(super) struct Oblique(ObliqueSlabs);
+
+pub(super) struct PreparedOblique<S: Simd> {
     /// For each axis where the near planes begin among both rows: 0 or 8.
     near: [usize; 3],
     inverse: [S::F32x8; 3],
     near_offset: [S::F32x8; 3],
     far_offset: [S::F32x8; 3],
+    t_min: S::F32x8,
 }
 
-impl<S: Simd> Oblique<S> {
+impl Oblique {
     #[inline(always)]
-    pub(super) fn new(simd: S, slabs: &ObliqueSlabs) -> Self {
-        let negative = slabs.negative as usize;
-        Self {
-            near: [negative << 3 & LANES, negative << 2 & LANES, negative << 1 & LANES],
-            inverse: splat4(simd, slabs.inverse),
-            near_offset: splat4(simd, slabs.near_offset),
-            far_offset: splat4(simd, slabs.far_offset),
-        }
+    pub(super) fn new(slabs: ObliqueSlabs) -> Self {
+        Self(slabs)
+    }
+}
+
+impl Boxes for Oblique {
+    type Prepared<S: Simd> = PreparedOblique<S>;
+
+    #[inline(always)]
+    fn scale_time(&self, t: f32) -> f32 {
+        t
     }
 
+    /// No box is entered before `t_min`, which is not negative, and such floats have the order of their bits.
+    #[inline(always)]
+    fn order(distance: f32) -> u32 {
+        distance.to_bits()
+    }
+
+    #[inline(always)]
+    fn prepare<S: Simd>(&self, simd: S) -> PreparedOblique<S> {
+        let slabs = &self.0;
+        let negative = slabs.negative as usize;
+        PreparedOblique {
+            near: [negative << 3 & LANES, negative << 2 & LANES, negative << 1 & LANES],
+            inverse: splat4(simd, &slabs.inverse),
+            near_offset: splat4(simd, &slabs.near_offset),
+            far_offset: splat4(simd, &slabs.far_offset),
+            t_min: simd.splat(slabs.t_min),
+        }
+    }
+}
+
+impl<S: Simd> PreparedOblique<S> {
     #[inline(always)]
     fn planes<'a>(&self, node: &'a WideNode, axis: usize) -> (&'a [f32; LANES], &'a [f32; LANES]) {
         let rows = node.planes[axis].as_flattened();
@@ -43,70 +80,88 @@ impl<S: Simd> Oblique<S> {
     }
 }
 
-impl<S: Simd> BoxTest<S> for Oblique<S> {
+impl<S: Simd> BoxTest<S> for PreparedOblique<S> {
     #[inline(always)]
-    fn scale_time(&self, t: f32) -> f32 {
-        t
-    }
-
-    #[inline(always)]
-    fn test(&self, simd: S, node: &WideNode, t_min: S::F32x8, t_max: f32) -> (u32, S::F32x8) {
+    fn test(&self, simd: S, node: &WideNode, t_max: f32) -> (u32, S::F32x8) {
         let (near_x, far_x) = self.planes(node, 0);
         let (near_y, far_y) = self.planes(node, 1);
         let (near_z, far_z) = self.planes(node, 2);
-        let near_x = simd.mul_sub(simd.load(near_x), self.inverse[0], self.near_offset[0]);
-        let near_y = simd.mul_sub(simd.load(near_y), self.inverse[1], self.near_offset[1]);
-        let near_z = simd.mul_sub(simd.load(near_z), self.inverse[2], self.near_offset[2]);
-        let far_x = simd.mul_sub(simd.load(far_x), self.inverse[0], self.far_offset[0]);
-        let far_y = simd.mul_sub(simd.load(far_y), self.inverse[1], self.far_offset[1]);
-        let far_z = simd.mul_sub(simd.load(far_z), self.inverse[2], self.far_offset[2]);
+        let near_x = simd.mul_add(simd.load(near_x), self.inverse[0], self.near_offset[0]);
+        let near_y = simd.mul_add(simd.load(near_y), self.inverse[1], self.near_offset[1]);
+        let near_z = simd.mul_add(simd.load(near_z), self.inverse[2], self.near_offset[2]);
+        let far_x = simd.mul_add(simd.load(far_x), self.inverse[0], self.far_offset[0]);
+        let far_y = simd.mul_add(simd.load(far_y), self.inverse[1], self.far_offset[1]);
+        let far_z = simd.mul_add(simd.load(far_z), self.inverse[2], self.far_offset[2]);
         // A NaN, from a product that overflowed, decides nothing: the other operand is kept.
-        let enter = simd.max(near_x, simd.max(near_y, simd.max(near_z, t_min)));
+        let enter = simd.max(near_x, simd.max(near_y, simd.max(near_z, self.t_min)));
         let leave = simd.min(far_x, simd.min(far_y, simd.min(far_z, simd.splat(t_max))));
         (simd.less_or_equal(enter, leave), enter)
     }
 }
 
 /// `(plane - origin) * inverse -+ slack`: for rays along a plane, where the other form would make `inf - inf` of every
-/// plane, and for lengths that need scaling.
-pub(super) struct Plain<S: Simd> {
-    time_scale: f32,
+/// plane, for lengths that need scaling, and for a negative `t_min`.
+pub(super) struct Plain {
+    slabs: SlabRay,
+    t_min: f32,
+}
+
+pub(super) struct PreparedPlain<S: Simd> {
     near_side: [usize; 3],
     origin: [S::F32x8; 3],
     inverse: [S::F32x8; 3],
     slack: [S::F32x8; 3],
+    t_min: S::F32x8,
     /// All lanes, for an axis of which the direction has nothing.
     stays: [u32; 3],
 }
 
-impl<S: Simd> Plain<S> {
+impl Plain {
+    pub(super) fn new(slabs: SlabRay, t_min: f32) -> Self {
+        Self { slabs, t_min }
+    }
+}
+
+impl Boxes for Plain {
+    type Prepared<S: Simd> = PreparedPlain<S>;
+
     #[inline(always)]
-    pub(super) fn new(simd: S, slabs: &SlabRay) -> Self {
-        Self {
-            time_scale: slabs.time_scale,
+    fn scale_time(&self, t: f32) -> f32 {
+        t * self.slabs.time_scale
+    }
+
+    /// The bits of negative floats have the opposite order, and come after all others.
+    #[inline(always)]
+    fn order(distance: f32) -> u32 {
+        let bits = distance.to_bits();
+        if distance.is_sign_negative() { !bits } else { bits | 1 << 31 }
+    }
+
+    #[inline(always)]
+    fn prepare<S: Simd>(&self, simd: S) -> PreparedPlain<S> {
+        let slabs = &self.slabs;
+        PreparedPlain {
             near_side: slabs.near_side,
             origin: splat(simd, slabs.origin),
             inverse: splat(simd, slabs.inverse),
             slack: splat(simd, slabs.slack),
+            t_min: simd.splat(self.scale_time(self.t_min)),
             stays: slabs.inverse.map(|inverse| if inverse.is_infinite() { u32::MAX } else { 0 }),
         }
     }
+}
 
+impl<S: Simd> PreparedPlain<S> {
     #[inline(always)]
     fn distance(&self, simd: S, node: &WideNode, axis: usize, side: usize) -> S::F32x8 {
         simd.mul(simd.sub(simd.load(&node.planes[axis][side]), self.origin[axis]), self.inverse[axis])
     }
 }
 
-impl<S: Simd> BoxTest<S> for Plain<S> {
+impl<S: Simd> BoxTest<S> for PreparedPlain<S> {
     #[inline(always)]
-    fn scale_time(&self, t: f32) -> f32 {
-        t * self.time_scale
-    }
-
-    #[inline(always)]
-    fn test(&self, simd: S, node: &WideNode, t_min: S::F32x8, t_max: f32) -> (u32, S::F32x8) {
-        let (mut enter, mut leave) = (t_min, simd.splat(t_max));
+    fn test(&self, simd: S, node: &WideNode, t_max: f32) -> (u32, S::F32x8) {
+        let (mut enter, mut leave) = (self.t_min, simd.splat(t_max));
         let mut edge_on = 0;
         for axis in 0..3 {
             let side = self.near_side[axis] & 1;
@@ -128,7 +183,7 @@ fn splat<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> [S::F32x8; 3] {
 }
 
 #[inline(always)]
-fn splat4<S: Simd>(simd: S, v: Vec4) -> [S::F32x8; 3] {
+fn splat4<S: Simd>(simd: S, v: &Vec4) -> [S::F32x8; 3] {
     [simd.splat(v.x), simd.splat(v.y), simd.splat(v.z)]
 }
 

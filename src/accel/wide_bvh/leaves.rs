@@ -5,7 +5,7 @@ use crate::accel::build_context::slices;
 use crate::accel::reference::{Reference, TriangleSource};
 use crate::accel::{BuildContext, BuildFailure, ClosestHit};
 use crate::geometry::Triangle;
-use crate::simd::{LANES, prefetch};
+use crate::simd::LANES;
 
 /// Floats that a triangle takes: three vertices and an id.
 const WORDS: usize = 10;
@@ -53,14 +53,6 @@ impl Leaves {
     pub(super) fn leaf(&self, (first, count): (usize, usize)) -> Leaf<'_> {
         let words = self.words[first * WORDS..].first_chunk().expect("the words end with a whole window");
         Leaf { words, count }
-    }
-
-    /// Asks for the first four cache lines of a leaf, six triangles and a bit.
-    #[inline(always)]
-    pub(super) fn prefetch(&self, (first, _): (usize, usize)) {
-        if let Some(words) = self.words[first * WORDS..].first_chunk::<64>() {
-            prefetch(words);
-        }
     }
 
     /// Where a leaf's words are, for a prefetch.

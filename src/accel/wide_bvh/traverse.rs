@@ -1,33 +1,51 @@
 //! Front to back with a stack: a node's eight boxes at once, then a leaf's triangles at once.
 
+use std::hint::black_box;
 use std::marker::PhantomData;
 
 use arrayvec::ArrayVec;
 
 use super::WideBvh;
-use super::box_test::{BoxTest, Oblique, Plain};
+use super::box_test::{BoxTest, Boxes, Oblique, Plain};
 use super::leaf_test::{Best, LeafTest};
-use super::node::Child;
+use super::node::{Child, WideNode};
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::accel::tally::Tally;
-use crate::geometry::{Interval, ObliqueSlabs, PrecisionMode, Ray, SlabRay, TriangleRay};
-use crate::simd::{LANES, Simd, SimdKernel, prefetch};
+use crate::geometry::{ObliqueSlabs, PrecisionMode, Ray, SlabRay};
+use crate::simd::{LANES, Simd, SimdKernel};
 
-/// A child that waits, and where the ray enters it.
-#[derive(Clone, Copy)]
-struct Pending {
-    enter: f32,
-    child: Child,
+/// A child that waits, below where the ray enters it: these numbers have the order along the ray.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Pending(u64);
+
+impl Pending {
+    #[inline(always)]
+    fn new(order: u32, child: Child) -> Self {
+        Self(u64::from(order) << 32 | u64::from(child.bits()))
+    }
+
+    /// None that the ray enters there or before has a greater number.
+    #[inline(always)]
+    fn last(order: u32) -> Self {
+        Self(u64::from(order) << 32 | u64::from(u32::MAX))
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child::from_bits(self.0 as u32)
+    }
 }
 
 /// A wide level is a binary level at least, and leaves all children but one waiting.
 const MOST_PENDING: usize = MOST_LEVELS * (LANES - 1);
 
-/// Aligned, because a compiler that has something to align in a frame aligns the registers that it spills there too: else
-/// half of them cross a cache line.
+type Stack = ArrayVec<Pending, MOST_PENDING>;
+
+/// Aligned, because a compiler that has something to align in a frame aligns the vectors that it keeps there too: else half
+/// of them cross a cache line.
 #[repr(align(32))]
-struct Stack(ArrayVec<Pending, MOST_PENDING>);
+struct Aligned<T>(T);
 
 pub(super) struct Traversal<'a, Q, P, I, T> {
     bvh: &'a WideBvh,
@@ -58,9 +76,10 @@ where
         let ray = ray.into();
         match ObliqueSlabs::new(&ray, &bvh.corners) {
             Some(slabs) => {
-                let mut tally = Q::Tally::default();
-                let found = traverse::<Q, P, S, _>(simd, bvh, &ray, Oblique::new(simd, &slabs), &mut tally);
-                finish::<Q, R>(bvh, found, |found| then(found, tally))
+                let mut stack = Aligned(Stack::new_const());
+                let mut walk = Walk::<Q>::new(bvh, &ray, &mut stack.0);
+                let found = walk.run::<P, S, _>(simd, &Oblique::new(slabs));
+                then(found, walk.tally)
             }
             // In a frame of its own, so that ordinary rays do not pay for its registers.
             None => simd.vectorize(AlongPlanes(Traversal { bvh, ray, then, choices })),
@@ -68,7 +87,7 @@ where
     }
 }
 
-/// A ray that runs along a plane, or of unusual length, or not valid.
+/// A ray that runs along a plane, or of unusual length, or from behind its origin, or not valid.
 struct AlongPlanes<'a, Q, P, T>(Traversal<'a, Q, P, Ray, T>);
 
 impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R> SimdKernel
@@ -82,83 +101,78 @@ impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R
         if !ray.is_valid() {
             return then(None, Q::Tally::default());
         }
-        let boxes = Plain::new(simd, &SlabRay::new(&ray, &bvh.bounds));
-        let mut tally = Q::Tally::default();
-        let found = traverse::<Q, P, S, _>(simd, bvh, &ray, boxes, &mut tally);
-        finish::<Q, R>(bvh, found, |found| then(found, tally))
+        let mut stack = Aligned(Stack::new_const());
+        let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
+        let mut walk = Walk::<Q>::new(bvh, &ray, &mut stack.0);
+        walk.triangles.check_range();
+        let found = walk.run::<P, S, _>(simd, &boxes);
+        then(found, walk.tally)
     }
 }
 
-#[inline(always)]
-fn finish<Q: Query, R>(bvh: &WideBvh, found: Option<ClosestHit>, then: impl FnOnce(Option<ClosestHit>) -> R) -> R {
-    then(match found {
-        Some(hit) if !Q::FIRST_HIT_ENDS => Some(bvh.leaves.resolve(hit)),
-        other => other,
-    })
+/// A ray on its way through the tree.
+struct Walk<'a, Q: Query> {
+    bvh: &'a WideBvh,
+    stack: &'a mut Stack,
+    triangles: LeafTest<'a>,
+    best: Best,
+    tally: Q::Tally,
 }
 
-#[inline(always)]
-fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
-    simd: S,
-    bvh: &WideBvh,
-    ray: &Ray,
-    boxes: B,
-    tally: &mut Q::Tally,
-) -> Option<ClosestHit> {
-    let triangle_ray = TriangleRay::new(ray);
-    let triangles = LeafTest::new(simd, bvh, &triangle_ray, Interval { t_min: ray.t_min, t_max: ray.t_max });
-    let t_min = simd.splat(boxes.scale_time(ray.t_min));
-    let mut t_max = boxes.scale_time(ray.t_max);
-    let mut best = Best::none(ray);
-    let mut aligned = Stack(ArrayVec::new_const());
-    let stack = &mut aligned.0;
-    let mut child = bvh.root;
-    loop {
-        if child.is_leaf() {
-            tally.test_primitives(child.triangles().1);
-            if triangles.test::<Q, P>(simd, child, &mut best) {
-                return Some(ClosestHit::UNSPECIFIED);
-            }
-            t_max = boxes.scale_time(best.high);
-        } else {
-            tally.visit_node();
-            let node = &bvh.nodes[child.node_index()];
-            let (mut hits, enter) = boxes.test(simd, node, t_min, t_max);
-            if hits != 0 {
+impl<'a, Q: Query> Walk<'a, Q> {
+    #[inline(always)]
+    fn new(bvh: &'a WideBvh, ray: &Ray, stack: &'a mut Stack) -> Self {
+        stack.push(Pending::new(0, bvh.root));
+        Self { bvh, stack, triangles: LeafTest::new(bvh, ray), best: Best::none(ray), tally: Q::Tally::default() }
+    }
+
+    #[inline(always)]
+    fn run<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> Option<ClosestHit> {
+        let bvh = self.bvh;
+        let nodes = bvh.nodes.as_slice();
+        let t_min = simd.splat(self.triangles.t_min());
+        let box_test = boxes.prepare(simd);
+        loop {
+            let t_max = self.best.t_max();
+            let scaled_t_max = boxes.scale_time(t_max);
+            let last = Pending::last(B::order(scaled_t_max));
+            // A child that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
+            let mut child = loop {
+                let Some(pending) = self.stack.pop() else {
+                    return if Q::FIRST_HIT_ENDS { None } else { self.triangles.finish(&self.best) };
+                };
+                if Q::FIRST_HIT_ENDS || pending <= last {
+                    break pending.child();
+                }
+            };
+            loop {
+                if child.is_leaf() {
+                    self.tally.test_primitives(child.triangles().1);
+                    let candidates = self.triangles.candidates(simd, child, t_min, t_max);
+                    if Q::FIRST_HIT_ENDS && candidates.are_hit() {
+                        return Some(ClosestHit::UNSPECIFIED);
+                    }
+                    if self.triangles.choose::<Q, P, S>(simd, child, candidates, &mut self.best) {
+                        return Some(ClosestHit::UNSPECIFIED);
+                    }
+                    break;
+                }
+                self.tally.visit_node();
+                let node = &nodes[child.node_index()];
+                let (mut hits, enter) = box_test.test(simd, node, scaled_t_max);
+                if hits == 0 {
+                    break;
+                }
                 let first = next_slot(&mut hits);
-                if hits == 0 {
-                    child = node.children[first];
-                    continue;
-                }
-                let enter = simd.store(enter);
-                let pending = |slot: usize| Pending { enter: enter[slot], child: node.children[slot] };
-                let (mut near, mut far) = (pending(first), pending(next_slot(&mut hits)));
-                // Where any hit will do the largest box comes first, which is the last one.
-                if Q::FIRST_HIT_ENDS || far.enter < near.enter {
-                    (near, far) = (far, near);
-                }
-                let bottom = stack.len();
-                wait(bvh, stack, far);
-                if hits == 0 {
-                    child = near.child;
-                    continue;
-                }
-                wait(bvh, stack, near);
-                while hits != 0 {
-                    wait(bvh, stack, pending(next_slot(&mut hits)));
-                    sort_last::<Q>(stack, bottom);
-                }
-                child = stack.pop().expect("three were pushed").child;
-                continue;
+                child = if hits == 0 {
+                    node.children[first]
+                } else if Q::FIRST_HIT_ENDS {
+                    wait_in_any_order(bvh, node, first, hits, self.stack)
+                } else {
+                    wait_in_order::<B>(bvh, node, first, hits, &simd.store(enter), self.stack)
+                };
             }
         }
-        // A child that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
-        child = loop {
-            let Some(pending) = stack.pop() else { return triangles.finish::<P>(&best) };
-            if pending.enter <= t_max {
-                break pending.child;
-            }
-        };
     }
 }
 
@@ -170,26 +184,59 @@ fn next_slot(hits: &mut u32) -> usize {
     slot
 }
 
+/// The largest box first, which is the last one; the others wait.
 #[inline(always)]
-fn wait(bvh: &WideBvh, stack: &mut ArrayVec<Pending, MOST_PENDING>, pending: Pending) {
-    if pending.child.is_leaf() {
-        bvh.leaves.prefetch(pending.child.triangles());
-    } else {
-        prefetch(&bvh.nodes[pending.child.node_index()]);
+fn wait_in_any_order(bvh: &WideBvh, node: &WideNode, first: usize, mut hits: u32, stack: &mut Stack) -> Child {
+    let mut child = node.children[first];
+    while hits != 0 {
+        bvh.prefetch(child);
+        stack.push(Pending::new(0, child));
+        child = node.children[next_slot(&mut hits)];
     }
-    stack.push(pending);
+    child
 }
 
-/// Puts the last child among those from `bottom` on, the one that the ray enters first on top; without order where any
-/// hit will do.
+/// The child that the ray enters first; the others wait, in their order.
 #[inline(always)]
-fn sort_last<Q: Query>(stack: &mut ArrayVec<Pending, MOST_PENDING>, bottom: usize) {
-    if Q::FIRST_HIT_ENDS {
-        return;
+fn wait_in_order<B: Boxes>(
+    bvh: &WideBvh,
+    node: &WideNode,
+    first: usize,
+    mut hits: u32,
+    enter: &[f32; LANES],
+    stack: &mut Stack,
+) -> Child {
+    let pending = |slot: usize| Pending::new(B::order(enter[slot]), node.children[slot]);
+    let (mut near, mut far) = (first, next_slot(&mut hits));
+    if enter[far] < enter[near] {
+        // Keeps this a branch: the next node's address then need not wait for the distances.
+        black_box(());
+        (near, far) = (far, near);
     }
+    let (near, far) = (pending(near), pending(far));
+    let bottom = stack.len();
+    bvh.prefetch(far.child());
+    stack.push(far);
+    if hits == 0 {
+        return near.child();
+    }
+    bvh.prefetch(near.child());
+    stack.push(near);
+    while hits != 0 {
+        let pending = pending(next_slot(&mut hits));
+        bvh.prefetch(pending.child());
+        stack.push(pending);
+        sort_last(stack, bottom);
+    }
+    stack.pop().expect("three were pushed").child()
+}
+
+/// Puts the last child among those from `bottom` on, the one that the ray enters first on top.
+#[inline(always)]
+fn sort_last(stack: &mut Stack, bottom: usize) {
     let mut at = stack.len() - 1;
     let pending = stack[at];
-    while at > bottom && stack[at - 1].enter < pending.enter {
+    while at > bottom && stack[at - 1] < pending {
         stack[at] = stack[at - 1];
         at -= 1;
     }
