@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::marker::PhantomData;
 
 use super::WideBvh;
-use super::leaves::Leaf;
+use super::leaves::{LeafForm, LeafTriangles};
 use super::node::Child;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
@@ -16,15 +16,15 @@ use crate::simd::{LANES, Simd, SimdKernel};
 
 /// Eight triangles against a ray: the scalar test decides about those that are not refused here, and refuses all that
 /// are.
-pub(super) struct LeafTest<'a, S: Simd> {
-    exact: ExactTest<'a>,
+pub(super) struct LeafTest<'a, F, S: Simd> {
+    exact: ExactTest<'a, F>,
     isa: PhantomData<S>,
 }
 
 /// What the scalar test needs.
 #[derive(Clone, Copy)]
-struct ExactTest<'a> {
-    bvh: &'a WideBvh,
+struct ExactTest<'a, F> {
+    bvh: &'a WideBvh<F>,
     ray: &'a TriangleRay,
     interval: Interval,
 }
@@ -73,16 +73,16 @@ impl Best {
     }
 }
 
-impl<'a, S: Simd> LeafTest<'a, S> {
+impl<'a, F: LeafForm, S: Simd> LeafTest<'a, F, S> {
     #[inline(always)]
-    pub(super) fn new(_simd: S, bvh: &'a WideBvh, ray: &'a TriangleRay, interval: Interval) -> Self {
+    pub(super) fn new(_simd: S, bvh: &'a WideBvh<F>, ray: &'a TriangleRay, interval: Interval) -> Self {
         Self { exact: ExactTest { bvh, ray, interval }, isa: PhantomData }
     }
 
     /// Keeps the best hit. True ends the query.
     #[inline(always)]
     pub(super) fn test<Q: Query, P: PrecisionMode>(&self, simd: S, child: Child, best: &mut Best) -> bool {
-        let leaf = self.exact.bvh.leaves.leaf(child.triangles());
+        let leaf = self.exact.bvh.leaves.leaf(child.triangles()).unpacked(simd);
         let Some(candidates) = self.candidates(simd, &leaf) else { return false };
         let mut left = candidates.lanes;
         while left != 0 {
@@ -130,7 +130,7 @@ impl<'a, S: Simd> LeafTest<'a, S> {
     ///
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure.
     #[inline(always)]
-    fn candidates(&self, simd: S, leaf: &Leaf<'_>) -> Option<Candidates> {
+    fn candidates(&self, simd: S, leaf: &F::Leaf<'_>) -> Option<Candidates> {
         // Else the compiler would prepare a register for each of these before the first leaf, only to spill it.
         let ray = black_box(self.exact.ray);
         let [kx, ky, kz] = ray.axes;
@@ -176,14 +176,14 @@ impl<'a, S: Simd> LeafTest<'a, S> {
 }
 
 /// The hit of a triangle that is certainly hit somewhere.
-struct Locate<'a, P> {
-    exact: ExactTest<'a>,
+struct Locate<'a, P, F> {
+    exact: ExactTest<'a, F>,
     place: Place,
     interval: Interval,
     precision: PhantomData<P>,
 }
 
-impl<P: PrecisionMode> SimdKernel for Locate<'_, P> {
+impl<P: PrecisionMode, F: LeafForm> SimdKernel for Locate<'_, P, F> {
     type Output = Option<TriangleHit>;
 
     #[inline(always)]
@@ -192,7 +192,7 @@ impl<P: PrecisionMode> SimdKernel for Locate<'_, P> {
     }
 }
 
-impl ExactTest<'_> {
+impl<F: LeafForm> ExactTest<'_, F> {
     /// For a triangle that is certainly hit somewhere.
     #[inline(always)]
     fn certain_hit<P: PrecisionMode>(&self, place: Place, interval: Interval) -> Option<TriangleHit> {
@@ -229,7 +229,7 @@ impl ExactTest<'_> {
         } else if is_certain {
             // In a frame of its own: measured, any-hit rays lose a seventh where they leave from a surface and this is
             // inlined, and closest-hit rays lose as much where it is not.
-            simd.vectorize(Locate::<P> { exact: self, place: candidate, interval, precision: PhantomData })
+            simd.vectorize(Locate::<P, F> { exact: self, place: candidate, interval, precision: PhantomData })
         } else {
             self.hit::<P>(candidate, interval)
         };
@@ -276,7 +276,7 @@ impl ExactTest<'_> {
 }
 
 #[inline(always)]
-fn from_origin<S: Simd>(simd: S, leaf: &Leaf<'_>, axis: usize, origin: S::F32x8) -> Corners<S> {
+fn from_origin<S: Simd>(simd: S, leaf: &impl LeafTriangles, axis: usize, origin: S::F32x8) -> Corners<S> {
     let [a, b, c] = leaf.rows(axis);
     [simd.sub(simd.load(a), origin), simd.sub(simd.load(b), origin), simd.sub(simd.load(c), origin)]
 }

@@ -7,6 +7,7 @@ use arrayvec::ArrayVec;
 use super::WideBvh;
 use super::box_test::{BoxTest, Oblique, Plain};
 use super::leaf_test::{Best, LeafTest};
+use super::leaves::LeafForm;
 use super::node::Child;
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::accel::leaf::{ClosestHit, Query};
@@ -29,24 +30,25 @@ const MOST_PENDING: usize = MOST_LEVELS * (LANES - 1);
 #[repr(align(32))]
 struct Stack(ArrayVec<Pending, MOST_PENDING>);
 
-pub(super) struct Traversal<'a, Q, P, I, T> {
-    bvh: &'a WideBvh,
+pub(super) struct Traversal<'a, Q, P, F, I, T> {
+    bvh: &'a WideBvh<F>,
     ray: I,
     then: T,
     choices: PhantomData<(Q, P)>,
 }
 
-impl<'a, Q, P, I, T> Traversal<'a, Q, P, I, T> {
+impl<'a, Q, P, F, I, T> Traversal<'a, Q, P, F, I, T> {
     #[inline(always)]
-    pub(super) fn new(bvh: &'a WideBvh, ray: I, then: T) -> Self {
+    pub(super) fn new(bvh: &'a WideBvh<F>, ray: I, then: T) -> Self {
         Self { bvh, ray, then, choices: PhantomData }
     }
 }
 
-impl<Q, P, I, R, T> SimdKernel for Traversal<'_, Q, P, I, T>
+impl<Q, P, F, I, R, T> SimdKernel for Traversal<'_, Q, P, F, I, T>
 where
     Q: Query,
     P: PrecisionMode,
+    F: LeafForm,
     I: Into<Ray>,
     T: FnOnce(Option<ClosestHit>, Q::Tally) -> R,
 {
@@ -59,8 +61,8 @@ where
         match ObliqueSlabs::new(&ray, &bvh.corners) {
             Some(slabs) => {
                 let mut tally = Q::Tally::default();
-                let found = traverse::<Q, P, S, _>(simd, bvh, &ray, Oblique::new(simd, &slabs), &mut tally);
-                finish::<Q, R>(bvh, found, |found| then(found, tally))
+                let found = traverse::<Q, P, F, S, _>(simd, bvh, &ray, Oblique::new(simd, &slabs), &mut tally);
+                finish::<Q, F, R>(bvh, found, |found| then(found, tally))
             }
             // In a frame of its own, so that ordinary rays do not pay for its registers.
             None => simd.vectorize(AlongPlanes(Traversal { bvh, ray, then, choices })),
@@ -69,10 +71,10 @@ where
 }
 
 /// A ray that runs along a plane, or of unusual length, or not valid.
-struct AlongPlanes<'a, Q, P, T>(Traversal<'a, Q, P, Ray, T>);
+struct AlongPlanes<'a, Q, P, F, T>(Traversal<'a, Q, P, F, Ray, T>);
 
-impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R> SimdKernel
-    for AlongPlanes<'_, Q, P, T>
+impl<Q: Query, P: PrecisionMode, F: LeafForm, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R> SimdKernel
+    for AlongPlanes<'_, Q, P, F, T>
 {
     type Output = R;
 
@@ -84,13 +86,17 @@ impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R
         }
         let boxes = Plain::new(simd, &SlabRay::new(&ray, &bvh.bounds));
         let mut tally = Q::Tally::default();
-        let found = traverse::<Q, P, S, _>(simd, bvh, &ray, boxes, &mut tally);
-        finish::<Q, R>(bvh, found, |found| then(found, tally))
+        let found = traverse::<Q, P, F, S, _>(simd, bvh, &ray, boxes, &mut tally);
+        finish::<Q, F, R>(bvh, found, |found| then(found, tally))
     }
 }
 
 #[inline(always)]
-fn finish<Q: Query, R>(bvh: &WideBvh, found: Option<ClosestHit>, then: impl FnOnce(Option<ClosestHit>) -> R) -> R {
+fn finish<Q: Query, F: LeafForm, R>(
+    bvh: &WideBvh<F>,
+    found: Option<ClosestHit>,
+    then: impl FnOnce(Option<ClosestHit>) -> R,
+) -> R {
     then(match found {
         Some(hit) if !Q::FIRST_HIT_ENDS => Some(bvh.leaves.resolve(hit)),
         other => other,
@@ -98,9 +104,9 @@ fn finish<Q: Query, R>(bvh: &WideBvh, found: Option<ClosestHit>, then: impl FnOn
 }
 
 #[inline(always)]
-fn traverse<Q: Query, P: PrecisionMode, S: Simd, B: BoxTest<S>>(
+fn traverse<Q: Query, P: PrecisionMode, F: LeafForm, S: Simd, B: BoxTest<S>>(
     simd: S,
-    bvh: &WideBvh,
+    bvh: &WideBvh<F>,
     ray: &Ray,
     boxes: B,
     tally: &mut Q::Tally,
@@ -171,7 +177,7 @@ fn next_slot(hits: &mut u32) -> usize {
 }
 
 #[inline(always)]
-fn wait(bvh: &WideBvh, stack: &mut ArrayVec<Pending, MOST_PENDING>, pending: Pending) {
+fn wait(bvh: &WideBvh<impl LeafForm>, stack: &mut ArrayVec<Pending, MOST_PENDING>, pending: Pending) {
     if pending.child.is_leaf() {
         bvh.leaves.prefetch(pending.child.triangles());
     } else {
