@@ -167,6 +167,10 @@ typedef struct GnomonBuildOptions {
     GnomonProgress progress;
     // Passed on to `progress`.
     void *progress_user;
+    // 1: a WIDE_BVH stores each vertex of a leaf once, which takes a third less memory of a mesh and makes queries
+    // slower, singles by 0 to 15 % on AVX2; at most 44 million triangles. The answers are the same. 0, the default: it does
+    // not. No other structure is changed by it.
+    uint32_t compact;
 } GnomonBuildOptions;
 
 // How to answer a batch. Fill it with `gnomon_query_options_init`, then change what you like.

@@ -23,7 +23,9 @@ fn variants() -> Vec<BuildOptions> {
     let wide = [Isa::Scalar, Isa::Sse42, Isa::Avx2, Isa::Avx512]
         .into_iter()
         .flat_map(|isa| qualities.map(|quality| of(Structure::WideBvh, quality, isa)));
-    binary.into_iter().chain(wide).collect()
+    let wide: Vec<BuildOptions> = wide.collect();
+    let compact = wide.iter().map(|&options| BuildOptions { is_compact: true, ..options });
+    binary.into_iter().chain(wide.iter().copied()).chain(compact).collect()
 }
 
 /// Floats as bits, so that -0 and 0 differ, and a NaN would be seen.

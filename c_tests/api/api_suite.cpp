@@ -49,6 +49,7 @@ TEST_CASE("build_options_init_fills_the_documented_defaults") {
     CHECK(options.memory_limit_bytes == 0);
     CHECK((options.progress == nullptr));
     CHECK(options.progress_user == nullptr);
+    CHECK(options.compact == 0);
 }
 
 TEST_CASE("query_options_init_fills_the_documented_defaults") {
@@ -94,4 +95,41 @@ TEST_CASE("stats_write_no_more_than_the_caller_knows_of") {
     REQUIRE(gnomon_scene_stats(scene.get(), sizeof stats.triangle_count, &stats) == GNOMON_OK);
     CHECK(stats.triangle_count == 1);
     CHECK(stats.node_count == untouched);
+}
+
+TEST_CASE("compact_wide_bvh_of_a_mesh_takes_36_bytes_a_triangle_and_answers_the_same") {
+    const TriangleMesh mesh = flat_grid(100);
+    for (const Named& quality : kQualities) {
+        CAPTURE(quality.name);
+        GnomonBuildOptions options = default_build_options();
+        options.structure = GNOMON_STRUCTURE_WIDE_BVH;
+        options.quality = quality.value;
+        const SceneHandle ordinary = build_scene({mesh, unit_triangle(1)}, options);
+        options.compact = 1;
+        const SceneHandle compact = build_scene({mesh, unit_triangle(1)}, options);
+        GnomonSceneStats stats{};
+        REQUIRE(gnomon_scene_stats(compact.get(), sizeof stats, &stats) == GNOMON_OK);
+        CHECK(stats.structure == GNOMON_STRUCTURE_WIDE_BVH);
+        CHECK(double(stats.bytes) <= 36 * double(stats.triangle_count));
+        for (const float at : {0.25f, 0.5f, 3.75f, 49.0f, 99.875f, 101.0f}) {
+            const GnomonRay ray = ray_down(at, at);
+            CHECK(same_bits(intersect(compact, ray), intersect(ordinary, ray)));
+        }
+    }
+}
+
+TEST_CASE("compact_changes_no_other_structure") {
+    const TriangleMesh mesh = flat_grid(8);
+    for (const std::uint32_t structure : {GNOMON_STRUCTURE_BRUTE_FORCE, GNOMON_STRUCTURE_BVH}) {
+        GnomonBuildOptions options = default_build_options();
+        options.structure = structure;
+        GnomonSceneStats stats[2] = {};
+        for (options.compact = 0; options.compact < 2; ++options.compact) {
+            const SceneHandle scene = build_scene({mesh}, options);
+            REQUIRE(gnomon_scene_stats(scene.get(), sizeof stats[0], &stats[options.compact]) == GNOMON_OK);
+        }
+        CHECK(stats[0].structure == structure);
+        CHECK(stats[1].structure == structure);
+        CHECK(stats[0].bytes == stats[1].bytes);
+    }
 }

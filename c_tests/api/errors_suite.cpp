@@ -1,6 +1,7 @@
 // Every misuse is answered with its status, one sentence that names the culprit, and untouched outputs.
 #include <doctest/doctest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -244,6 +245,7 @@ TEST_CASE("unknown_enums_of_the_build_options_are_named") {
         {"precision", &GnomonBuildOptions::precision},
         {"isa", &GnomonBuildOptions::isa},
         {"invalid_triangles", &GnomonBuildOptions::invalid_triangles},
+        {"compact", &GnomonBuildOptions::compact},
     };
     for (const auto& each : fields) {
         GnomonBuildOptions options = default_build_options();
@@ -271,6 +273,15 @@ TEST_CASE("query_options_never_initialised_are_named") {
     CHECK(gnomon_intersect_n(scene.get(), &ray, 1, &hit, &options) == GNOMON_ERROR_INVALID_ARGUMENT);
     check_error_names({"struct_size", "0"});
     CHECK(same_bits(hit, untouched));
+}
+
+TEST_CASE("build_options_of_an_older_header_keep_the_defaults_of_what_it_lacks") {
+    GnomonBuildOptions older = default_build_options();
+    older.struct_size = offsetof(GnomonBuildOptions, compact);
+    older.structure = GNOMON_STRUCTURE_WIDE_BVH;
+    older.compact = 4242;  // not there for whoever states that size
+    const SceneHandle scene = build_scene({unit_triangle()}, older);
+    CHECK(intersect(scene, ray_down(0.25f, 0.25f)).t == 2);
 }
 
 TEST_CASE("build_options_of_a_newer_header_are_refused_where_they_ask_for_what_is_unknown") {

@@ -122,8 +122,11 @@ std::vector<Configuration> all_configurations() {
                     options.precision = precision.value;
                     options.isa = isa.value;
                     options.thread_count = 1;
-                    configurations.push_back(
-                        {structure.name + " " + quality.name + " " + precision.name + " " + isa.name, options});
+                    const std::string name = structure.name + " " + quality.name + " " + precision.name + " " + isa.name;
+                    configurations.push_back({name, options});
+                    if (structure.value != GNOMON_STRUCTURE_WIDE_BVH) continue;
+                    options.compact = 1;
+                    configurations.push_back({name + " compact", options});
                 }
             }
         }

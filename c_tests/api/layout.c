@@ -37,7 +37,7 @@ ASSERT_OFFSET(GnomonTriangles, index_format, 32);
 ASSERT_OFFSET(GnomonTriangles, index_stride, 40);
 ASSERT_OFFSET(GnomonTriangles, triangle_count, 48);
 
-ASSERT_SIZE(GnomonBuildOptions, 56);
+ASSERT_SIZE(GnomonBuildOptions, 64);
 ASSERT_OFFSET(GnomonBuildOptions, struct_size, 0);
 ASSERT_OFFSET(GnomonBuildOptions, structure, 4);
 ASSERT_OFFSET(GnomonBuildOptions, quality, 8);
@@ -48,6 +48,7 @@ ASSERT_OFFSET(GnomonBuildOptions, invalid_triangles, 24);
 ASSERT_OFFSET(GnomonBuildOptions, memory_limit_bytes, 32);
 ASSERT_OFFSET(GnomonBuildOptions, progress, 40);
 ASSERT_OFFSET(GnomonBuildOptions, progress_user, 48);
+ASSERT_OFFSET(GnomonBuildOptions, compact, 56);
 
 ASSERT_SIZE(GnomonQueryOptions, 8);
 ASSERT_OFFSET(GnomonQueryOptions, struct_size, 0);

@@ -21,6 +21,7 @@ struct BuildReport {
     std::string quality;    // "low", "medium", "high"
     std::string precision;  // gnomon: "fast", "accurate", "exact"; else ""
     std::string isa;        // in use
+    bool compact = false;   // gnomon's wide BVH with leaves of unique vertices
     std::uint32_t threads = 0;
     double seconds = 0;
     std::uint64_t triangles = 0, bytes = 0, nodes = 0, references = 0, depth = 0;

@@ -127,6 +127,7 @@ private:
         report_.quality = name_of(quality_names, options.quality);
         report_.precision = name_of(precision_names, stats.precision);
         report_.isa = name_of(isa_names, stats.isa);
+        report_.compact = options.compact != 0 && stats.structure == GNOMON_STRUCTURE_WIDE_BVH;
         report_.threads = options.thread_count;
         report_.triangles = stats.triangle_count;
         report_.bytes = stats.bytes;

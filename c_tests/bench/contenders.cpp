@@ -94,6 +94,9 @@ std::vector<Plan> bench_plans(const BenchOptions& options) {
     add_embree("embree robust", GNOMON_QUALITY_MEDIUM, true);
     plans.push_back(gnomon_plan("gnomon fast", options));
     plans.back().build.precision = GNOMON_PRECISION_FAST;
+    plans.push_back(gnomon_plan("gnomon compact", options));
+    plans.back().build.compact = 1;
+    plans.back().traced = false;
     for (Plan& plan : isa_plans(options)) plans.push_back(std::move(plan));
     return plans;
 }

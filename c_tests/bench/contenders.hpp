@@ -14,7 +14,8 @@
 namespace harness {
 
 /// One way of building a scene. gnomon is AUTO, ACCURATE, MEDIUM on the best instruction set unless its name says otherwise:
-/// "gnomon", "gnomon low", "gnomon high", "gnomon fast", "gnomon sse42", ...; "embree", "embree high", "embree robust".
+/// "gnomon", "gnomon low", "gnomon high", "gnomon fast", "gnomon compact", "gnomon sse42", ...; "embree", "embree high",
+/// "embree robust".
 struct Plan {
     std::string name;
     bool is_gnomon = true;

@@ -73,7 +73,8 @@ Errors count_errors(const BuildReport& report, const std::vector<Verdict>& verdi
 
 std::string replay_command(const BuildReport& report, const std::string& scene_spec, const GnomonRay& ray) {
     return "gnomon-compare '" + scene_spec + "' --structures " + report.structure + " --precisions " + report.precision +
-           " --quality " + report.quality + " --isa " + report.isa + " --replay=" + ray_text(ray);
+           " --quality " + report.quality + " --isa " + report.isa + (report.compact ? " --compact" : "") +
+           " --replay=" + ray_text(ray);
 }
 
 std::string fault_text(const Engine& engine, const RaySet& set, const GnomonRay& ray, const std::string& answer,

@@ -17,6 +17,7 @@ std::unique_ptr<Backend> make_gnomon_plan(const Scene& scene, const BuildPlan& p
     build.precision = plan.precision;
     build.quality = plan.quality;
     build.isa = options.isa;
+    build.compact = options.compact ? 1 : 0;
     build.thread_count = options.threads;
     build.invalid_triangles = GNOMON_INVALID_SKIP;  // as Embree does
     return make_gnomon(scene, build);
@@ -55,7 +56,7 @@ std::vector<BuildPlan> build_plans(const Options& options) {
 
 std::string Engine::label() const {
     std::string text = report.engine;
-    if (is_gnomon()) text += " " + report.structure + " " + report.precision;
+    if (is_gnomon()) text += " " + report.structure + (report.compact ? " compact " : " ") + report.precision;
     return text + " " + report.quality;
 }
 

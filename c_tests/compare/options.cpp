@@ -92,6 +92,7 @@ void declare(CLI::App& app, Options& options, Lists& lists) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     app.add_option("--isa", lists.isa, "gnomon's cap: one of " + joined(isa_names))->capture_default_str();
+    app.add_flag("--compact", options.compact, "gnomon's wide BVHs with leaves of unique vertices: less memory, less speed");
     app.add_option("--json", options.json_path, "writes machine-readable results");
     app.add_option("--html", options.html_path, "writes a report with charts");
     app.add_option("--dump-failures", options.failures_path, "writes each of gnomon's faults, with the command that replays it");

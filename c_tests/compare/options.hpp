@@ -21,6 +21,7 @@ struct Options {
     std::uint32_t threads = 1;
     std::uint32_t repeats = 5;
     std::uint32_t isa = GNOMON_ISA_AUTO;
+    bool compact = false;
     std::string json_path, html_path, failures_path;
     std::optional<GnomonRay> replay;
 };

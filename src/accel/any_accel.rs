@@ -4,13 +4,14 @@ use super::brute_force::BruteForce;
 use super::bvh::{BinnedSah, Bvh, Median};
 use super::reference::{Reference, TriangleSource, gather};
 use super::stats::Shape;
-use super::{BuildContext, BuildFailure, Quality, Structure, WideBvh};
+use super::{BuildContext, BuildFailure, Compact, Quality, Structure, WideBvh};
 use crate::geometry::Aabb;
 
 pub(crate) enum AnyAccel {
     BruteForce(BruteForce),
     Bvh(Bvh),
     WideBvh(WideBvh),
+    CompactWideBvh(WideBvh<Compact>),
 }
 
 impl AnyAccel {
@@ -19,6 +20,7 @@ impl AnyAccel {
             Self::BruteForce(brute_force) => brute_force.shape(),
             Self::Bvh(bvh) => bvh.shape(),
             Self::WideBvh(bvh) => bvh.shape(),
+            Self::CompactWideBvh(bvh) => bvh.shape(),
         }
     }
 }
@@ -46,10 +48,11 @@ pub(crate) fn unsupported(structure: Structure) -> Option<&'static str> {
     }
 }
 
-/// Builds what [`choose`] made of a choice that is not [`unsupported`].
+/// Builds what [`choose`] made of a choice that is not [`unsupported`]. Only the wide BVH can be compact.
 pub(crate) fn build(
     structure: Structure,
     quality: Quality,
+    is_compact: bool,
     references: Vec<Reference>,
     bounds: Aabb,
     source: &impl TriangleSource,
@@ -67,6 +70,9 @@ pub(crate) fn build(
         (Structure::Bvh, Quality::Medium | Quality::High) => {
             let rule = &BinnedSah::FOR_SCALAR_LEAVES;
             Bvh::build(references, bounds, rule, quality, source, context).map(AnyAccel::Bvh)
+        }
+        (Structure::WideBvh, _) if is_compact => {
+            WideBvh::build(references, bounds, quality, source, context).map(AnyAccel::CompactWideBvh)
         }
         (Structure::WideBvh, _) => WideBvh::build(references, bounds, quality, source, context).map(AnyAccel::WideBvh),
         _ => unreachable!("{structure:?} of quality {quality:?} is refused before anything is built"),

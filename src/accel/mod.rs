@@ -16,7 +16,7 @@ pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Counted, Query};
 pub(crate) use reference::{Bounds8, Reference, TriangleSource};
 pub use stats::{Precision, Quality, Stats, Structure};
 pub use tally::RayCounts;
-pub(crate) use wide_bvh::{Vectorized, WideBvh};
+pub(crate) use wide_bvh::{Compact, Vectorize, WideBvh};
 
 use crate::geometry::{PrecisionMode, Ray};
 

@@ -37,7 +37,7 @@ fn build_with(
     let meshes = Meshes::new(geometries)?;
     let Flat { references, bounds, skipped_count } = flatten(&meshes, options.invalid_triangles, context)?;
     let structure = accel::choose(options.structure, references.len());
-    let accel = accel::build(structure, options.quality, references, bounds, &meshes, context)?;
+    let accel = accel::build(structure, options.quality, options.is_compact, references, bounds, &meshes, context)?;
     let shape = accel.shape();
     // Only the wide BVH has kernels beyond the scalar one.
     let isa = if structure == Structure::WideBvh { options.isa } else { Isa::Scalar }.resolve();

@@ -1,7 +1,7 @@
 //! Queries: the one place where a scene's structure and precision are looked at, once a call.
 
 use super::Scene;
-use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Counted, Precision, RayCounts, Vectorized, WideBvh};
+use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Counted, Precision, RayCounts, Vectorize};
 use crate::geometry::{Accurate, Fast, Hit, INVALID_ID, PrecisionMode, Ray};
 use crate::simd::DetectedIsa;
 
@@ -43,19 +43,20 @@ impl Scene {
             AnyAccel::BruteForce(brute_force) => self.dispatch_apart(kernel, brute_force),
             AnyAccel::Bvh(bvh) => self.dispatch_apart(kernel, bvh),
             AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
+            AnyAccel::CompactWideBvh(bvh) => self.dispatch_isa(kernel, bvh),
         }
     }
 
     #[inline(always)]
-    fn dispatch_isa<K: Kernel>(&self, kernel: K, bvh: &WideBvh) -> K::Output {
+    fn dispatch_isa<K: Kernel>(&self, kernel: K, bvh: &impl Vectorize) -> K::Output {
         match self.isa {
-            DetectedIsa::Scalar(simd) => self.dispatch_precision(kernel, &Vectorized { bvh, simd }),
+            DetectedIsa::Scalar(simd) => self.dispatch_precision(kernel, &bvh.on(simd)),
             #[cfg(target_arch = "x86_64")]
-            DetectedIsa::Sse42(simd) => self.dispatch_precision(kernel, &Vectorized { bvh, simd }),
+            DetectedIsa::Sse42(simd) => self.dispatch_precision(kernel, &bvh.on(simd)),
             #[cfg(target_arch = "x86_64")]
-            DetectedIsa::Avx2(simd) => self.dispatch_precision(kernel, &Vectorized { bvh, simd }),
+            DetectedIsa::Avx2(simd) => self.dispatch_precision(kernel, &bvh.on(simd)),
             #[cfg(target_arch = "x86_64")]
-            DetectedIsa::Avx512(simd) => self.dispatch_precision(kernel, &Vectorized { bvh, simd }),
+            DetectedIsa::Avx512(simd) => self.dispatch_precision(kernel, &bvh.on(simd)),
         }
     }
 

@@ -39,6 +39,24 @@ impl Simd for Avx2 {
     }
 
     #[inline(always)]
+    fn transpose(self, [a, b, c, d, e, f, g, h]: [&[f32; 4]; LANES]) -> [__m256; 3] {
+        // SAFETY: as above, and each pointer has four floats; no alignment is asked for.
+        unsafe {
+            let ae = _mm256_loadu2_m128(e.as_ptr(), a.as_ptr());
+            let bf = _mm256_loadu2_m128(f.as_ptr(), b.as_ptr());
+            let cg = _mm256_loadu2_m128(g.as_ptr(), c.as_ptr());
+            let dh = _mm256_loadu2_m128(h.as_ptr(), d.as_ptr());
+            let (low, high) = (_mm256_unpacklo_ps(ae, bf), _mm256_unpacklo_ps(cg, dh));
+            let (third_low, third_high) = (_mm256_unpackhi_ps(ae, bf), _mm256_unpackhi_ps(cg, dh));
+            [
+                _mm256_shuffle_ps::<0b01_00_01_00>(low, high),
+                _mm256_shuffle_ps::<0b11_10_11_10>(low, high),
+                _mm256_shuffle_ps::<0b01_00_01_00>(third_low, third_high),
+            ]
+        }
+    }
+
+    #[inline(always)]
     fn store(self, a: __m256) -> [f32; LANES] {
         let mut values = [0.0; LANES];
         // SAFETY: as above, and there is room for eight floats.

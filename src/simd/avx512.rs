@@ -38,6 +38,7 @@ impl Simd for Avx512 {
     as_avx2! {
         fn splat(value: f32) -> __m256;
         fn load(values: &[f32; LANES]) -> __m256;
+        fn transpose(fours: [&[f32; 4]; LANES]) -> [__m256; 3];
         fn store(a: __m256) -> [f32; LANES];
         fn add(a: __m256, b: __m256) -> __m256;
         fn sub(a: __m256, b: __m256) -> __m256;

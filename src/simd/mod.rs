@@ -147,6 +147,8 @@ pub(crate) trait Simd: Copy + Send + Sync {
 
     fn splat(self, value: f32) -> Self::F32x8;
     fn load(self, values: &[f32; LANES]) -> Self::F32x8;
+    /// The first, second and third values of eight fours, in a register each.
+    fn transpose(self, fours: [&[f32; 4]; LANES]) -> [Self::F32x8; 3];
     fn store(self, a: Self::F32x8) -> [f32; LANES];
     fn add(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     fn sub(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;

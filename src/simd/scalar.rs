@@ -63,6 +63,15 @@ impl Simd for Scalar {
     }
 
     #[inline(always)]
+    fn transpose(self, fours: [&[f32; 4]; LANES]) -> [[f32; LANES]; 3] {
+        let mut rows = [[0.0; LANES]; 3];
+        for (lane, four) in fours.into_iter().enumerate() {
+            (rows[0][lane], rows[1][lane], rows[2][lane]) = (four[0], four[1], four[2]);
+        }
+        rows
+    }
+
+    #[inline(always)]
     fn store(self, a: [f32; LANES]) -> [f32; LANES] {
         a
     }

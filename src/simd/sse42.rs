@@ -47,6 +47,23 @@ impl Simd for Sse42 {
     }
 
     #[inline(always)]
+    fn transpose(self, [a, b, c, d, e, f, g, h]: [&[f32; 4]; LANES]) -> [[__m128; 2]; 3] {
+        /// The same of four of them.
+        macro_rules! half {
+            ($a:expr, $b:expr, $c:expr, $d:expr) => {{
+                let (a, b) = (_mm_loadu_ps($a.as_ptr()), _mm_loadu_ps($b.as_ptr()));
+                let (c, d) = (_mm_loadu_ps($c.as_ptr()), _mm_loadu_ps($d.as_ptr()));
+                let (low, high) = (_mm_unpacklo_ps(a, b), _mm_unpacklo_ps(c, d));
+                let third = _mm_movelh_ps(_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, d));
+                [_mm_movelh_ps(low, high), _mm_movehl_ps(high, low), third]
+            }};
+        }
+        // SAFETY: SSE is part of x86-64, and each pointer has four floats; no alignment is asked for.
+        let ([x, y, z], [u, v, w]) = unsafe { (half!(a, b, c, d), half!(e, f, g, h)) };
+        [[x, u], [y, v], [z, w]]
+    }
+
+    #[inline(always)]
     fn store(self, a: [__m128; 2]) -> [f32; LANES] {
         let mut values = [0.0; LANES];
         // SAFETY: SSE is part of x86-64, and there is room for eight floats.

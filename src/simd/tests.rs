@@ -36,6 +36,10 @@ fn results<S: Simd>(simd: S) -> Vec<u32> {
                     let a: [f32; LANES] = std::array::from_fn(|lane| VALUES[half * LANES + lane]);
                     let b: [f32; LANES] =
                         std::array::from_fn(|lane| VALUES[(half * LANES + lane + shift) % VALUES.len()]);
+                    let fours: [[f32; 4]; LANES] =
+                        std::array::from_fn(|lane| [a[lane], b[lane], a[(lane + 3) % LANES], b[(lane + 5) % LANES]]);
+                    let transposed = simd.transpose(fours.each_ref()).map(|row| simd.store(row));
+                    results.extend(transposed.as_flattened().iter().map(|value| value.to_bits()));
                     let (a, b) = (simd.load(&a), simd.load(&b));
                     let lanes = [
                         simd.add(a, b),

@@ -6,7 +6,7 @@
 use arrayvec::ArrayVec;
 
 use super::WideBvh;
-use super::leaves::{self, Ids, Leaves};
+use super::leaves::{Ids, LeafForm, Leaves};
 use super::node::{Child, WideNode};
 use crate::accel::build_context::slices;
 use crate::accel::bvh::build::{BinaryTree, Subtree};
@@ -109,6 +109,20 @@ impl Plan {
         (first.first as usize, (last.first + last.count - first.first) as usize)
     }
 
+    /// What becomes a leaf where the root has that many slots, each as its first triangle and how many.
+    fn leaves(&self, slots: usize) -> impl Iterator<Item = (usize, usize)> {
+        let mut pending = Vec::from_iter(self.entries(0, slots));
+        std::iter::from_fn(move || {
+            loop {
+                let entry = pending.pop()?;
+                if self.choices[entry.node].is_leaf() {
+                    return Some(self.triangles(entry.node));
+                }
+                pending.extend(self.entries(entry.node, LANES));
+            }
+        })
+    }
+
     /// How many wide nodes there are where the root has that many slots.
     fn wide_node_count(&self, slots: usize) -> usize {
         let (mut count, mut pending) = (0, Vec::from_iter(self.entries(0, slots)));
@@ -196,15 +210,15 @@ struct Place {
     slots: usize,
     level: u32,
     first_node: usize,
-    first_triangle: usize,
+    first_leaf: usize,
 }
 
-pub(super) fn collapse<T: TriangleSource>(
+pub(super) fn collapse<F: LeafForm, T: TriangleSource>(
     tree: BinaryTree,
     bounds: Aabb,
     source: &T,
     context: &BuildContext,
-) -> Result<WideBvh, BuildFailure> {
+) -> Result<WideBvh<F>, BuildFailure> {
     let BinaryTree { top, subtrees, .. } = tree;
     let area = top[0].half_area();
     let scale = (area > 0.0).then_some(1.0 / area);
@@ -217,23 +231,27 @@ pub(super) fn collapse<T: TriangleSource>(
 
     let (top_nodes, mut places) = share_out_top(&top, parts.len());
     let places_of_parts: Vec<(&Part, &Place)> = parts.iter().zip(&places).collect();
-    let node_counts = context.map_each(places_of_parts, |(part, place)| part.plan.wide_node_count(place.slots));
-    let triangle_counts: Vec<usize> = parts.iter().map(|part| part.references.len()).collect();
-    let (mut next_node, mut next_triangle) = (top_nodes.len(), 0);
+    let counts = context.map_each(places_of_parts, |(part, place)| {
+        let leaves = part.plan.leaves(place.slots).map(|(first, count)| &part.references[first..][..count]);
+        (part.plan.wide_node_count(place.slots), F::subtree_size(part.references, leaves, source))
+    });
+    let (node_counts, leaf_places): (Vec<usize>, Vec<usize>) = counts.into_iter().unzip();
+    let triangle_count = parts.iter().map(|part| part.references.len()).sum();
+    let (mut next_node, mut next_leaf) = (top_nodes.len(), 0);
     for (index, place) in places.iter_mut().enumerate() {
-        (place.first_node, place.first_triangle) = (next_node, next_triangle);
+        (place.first_node, place.first_leaf) = (next_node, next_leaf);
         next_node += node_counts[index];
-        next_triangle += triangle_counts[index];
+        next_leaf += leaf_places[index];
     }
 
     let mut nodes = context.filled(next_node, WideNode::EMPTY)?;
     let (above, below) = nodes.split_at_mut(top_nodes.len());
-    let root = emit_top(&top, &top_nodes, &parts, &places, above);
-    let mut leaves = Leaves::filled(next_triangle, Ids::new(source.starts()), context)?;
-    let (words, ids) = leaves.parts(&triangle_counts);
+    let root = emit_top::<F>(&top, &top_nodes, &parts, &places, above, source);
+    let mut leaves = Leaves::filled(next_leaf, triangle_count, Ids::new(source.starts()), context)?;
+    let (words, ids) = leaves.parts(&leaf_places);
     let tasks: Vec<_> = parts.into_iter().zip(places).zip(slices(below, &node_counts)).zip(words).collect();
     let shapes = context.map_each(tasks, |(((part, place), nodes), words)| {
-        let shape = Emission { part: &part, place, nodes, words, ids, source }.run();
+        let shape = Emission { part: &part, place, nodes, words, next_leaf: 0, ids, source }.run::<F>();
         context.advance(part.references.len())?;
         context.release(part.plan.nodes);
         context.release(part.plan.choices);
@@ -248,7 +266,7 @@ pub(super) fn collapse<T: TriangleSource>(
 /// The wide nodes above the subtrees, each as the binary nodes that become its children, and each subtree's slots and
 /// level.
 fn share_out_top(top: &Plan, subtree_count: usize) -> (Vec<Entries>, Vec<Place>) {
-    let mut places = vec![Place { slots: 1, level: 1, first_node: 0, first_triangle: 0 }; subtree_count];
+    let mut places = vec![Place { slots: 1, level: 1, first_node: 0, first_leaf: 0 }; subtree_count];
     let (mut nodes, mut levels) = (Vec::new(), Vec::new());
     if !top.nodes[0].is_leaf() {
         nodes.push(top.entries(0, LANES));
@@ -273,7 +291,14 @@ fn share_out_top(top: &Plan, subtree_count: usize) -> (Vec<Entries>, Vec<Place>)
 }
 
 /// Fills the nodes above the subtrees; returns the root.
-fn emit_top(top: &Plan, entries: &[Entries], parts: &[Part], places: &[Place], nodes: &mut [WideNode]) -> Child {
+fn emit_top<F: LeafForm>(
+    top: &Plan,
+    entries: &[Entries],
+    parts: &[Part],
+    places: &[Place],
+    nodes: &mut [WideNode],
+    source: &impl TriangleSource,
+) -> Child {
     let mut next = 1;
     for (node, entries) in nodes.iter_mut().zip(entries) {
         let mut children = Children::new();
@@ -281,7 +306,7 @@ fn emit_top(top: &Plan, entries: &[Entries], parts: &[Part], places: &[Place], n
             let binary = &top.nodes[entry.node];
             if binary.is_leaf() {
                 let index = binary.first as usize;
-                children.extend(parts[index].children(&places[index]));
+                children.extend(parts[index].children::<F>(&places[index], source));
             } else {
                 children.push((*binary, Child::node(next)));
                 next += 1;
@@ -289,7 +314,7 @@ fn emit_top(top: &Plan, entries: &[Entries], parts: &[Part], places: &[Place], n
         }
         node.fill(children);
     }
-    if nodes.is_empty() { parts[0].children(&places[0])[0].1 } else { Child::node(0) }
+    if nodes.is_empty() { parts[0].children::<F>(&places[0], source)[0].1 } else { Child::node(0) }
 }
 
 /// Wide children and their boxes.
@@ -307,13 +332,15 @@ impl WideNode {
 
 impl Part<'_> {
     /// What the subtree has for the wide node above it.
-    fn children(&self, place: &Place) -> Children {
-        let mut next_node = place.first_node;
+    fn children<F: LeafForm>(&self, place: &Place, source: &impl TriangleSource) -> Children {
+        let (mut next_node, mut next_leaf) = (place.first_node, 0);
         let mut child = |entry: Entry| {
             let node = self.plan.nodes[entry.node];
             if self.plan.choices[entry.node].is_leaf() {
                 let (first, count) = self.plan.triangles(entry.node);
-                return (node, Child::leaf(place.first_triangle + first, count));
+                let at = F::place(first, next_leaf);
+                next_leaf += F::size(&self.references[first..][..count], source);
+                return (node, Child::leaf(place.first_leaf + at, count));
             }
             next_node += 1;
             (node, Child::node(next_node - 1))
@@ -328,6 +355,8 @@ struct Emission<'a, T> {
     place: Place,
     nodes: &'a mut [WideNode],
     words: &'a mut [f32],
+    /// Where the last leaf ended.
+    next_leaf: usize,
     ids: &'a Ids,
     source: &'a T,
 }
@@ -338,18 +367,18 @@ struct Shape {
 }
 
 impl<T: TriangleSource> Emission<'_, T> {
-    fn run(mut self) -> Shape {
+    fn run<F: LeafForm>(mut self) -> Shape {
         let plan = &self.part.plan;
         let mut shape = Shape { leaf_count: 0, depth: self.place.level };
         let (mut next, mut pending) = (0, Vec::new());
         for entry in plan.entries(0, self.place.slots) {
-            self.emit(entry.node, self.place.level, &mut next, &mut pending, &mut shape);
+            self.emit::<F>(entry.node, self.place.level, &mut next, &mut pending, &mut shape);
         }
         while let Some((at, node, level)) = pending.pop() {
             shape.depth = shape.depth.max(level + 1);
             let mut children = Children::new();
             for entry in plan.entries(node, LANES) {
-                let child = self.emit(entry.node, level + 1, &mut next, &mut pending, &mut shape);
+                let child = self.emit::<F>(entry.node, level + 1, &mut next, &mut pending, &mut shape);
                 children.push((plan.nodes[entry.node], child));
             }
             self.nodes[at].fill(children);
@@ -358,7 +387,7 @@ impl<T: TriangleSource> Emission<'_, T> {
     }
 
     /// A leaf with its triangles, or the next node, to be filled later.
-    fn emit(
+    fn emit<F: LeafForm>(
         &mut self,
         node: usize,
         level: u32,
@@ -369,9 +398,11 @@ impl<T: TriangleSource> Emission<'_, T> {
         let plan = &self.part.plan;
         if plan.choices[node].is_leaf() {
             let (first, count) = plan.triangles(node);
-            leaves::write(self.words, first, &self.part.references[first..][..count], self.ids, self.source);
+            let at = F::place(first, self.next_leaf);
+            let references = &self.part.references[first..][..count];
+            self.next_leaf += F::write(self.words, at, references, self.ids, self.source);
             shape.leaf_count += 1;
-            return Child::leaf(self.place.first_triangle + first, count);
+            return Child::leaf(self.place.first_leaf + at, count);
         }
         pending.push((*next, node, level));
         *next += 1;

@@ -6,7 +6,7 @@
 use glam::Vec4;
 
 use super::WideBvh;
-use super::leaves::Leaf;
+use super::leaves::{LeafForm, LeafTriangles};
 use super::node::Child;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
@@ -15,8 +15,8 @@ use crate::simd::Simd;
 
 /// Eight triangles against a ray: the scalar test decides about those that are not refused here, and refuses all that
 /// are.
-pub(super) struct LeafTest<'a> {
-    bvh: &'a WideBvh,
+pub(super) struct LeafTest<'a, F> {
+    bvh: &'a WideBvh<F>,
     ray: TriangleRay,
     t_min: f32,
 }
@@ -71,9 +71,9 @@ impl Best {
     }
 }
 
-impl<'a> LeafTest<'a> {
+impl<'a, F: LeafForm> LeafTest<'a, F> {
     #[inline(always)]
-    pub(super) fn new(bvh: &'a WideBvh, ray: &Ray) -> Self {
+    pub(super) fn new(bvh: &'a WideBvh<F>, ray: &Ray) -> Self {
         Self { bvh, ray: TriangleRay::new(ray), t_min: ray.t_min }
     }
 
@@ -135,7 +135,7 @@ impl<'a> LeafTest<'a> {
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure, nor surely inside.
     #[inline(always)]
     pub(super) fn candidates<S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
-        let leaf = self.bvh.leaves.leaf(child.triangles());
+        let leaf = self.bvh.leaves.leaf(child.triangles()).unpacked(simd);
         let ray = &self.ray;
         let [kx, ky, kz] = ray.axes;
         let z = from_origin(simd, &leaf, kz, simd.splat(ray.origin[kz & 3]));
@@ -171,7 +171,7 @@ impl<'a> LeafTest<'a> {
     fn certain_hit<P: PrecisionMode, S: Simd>(
         &self,
         simd: S,
-        leaf: &Leaf<'_>,
+        leaf: &F::Leaf<'_>,
         lane: u32,
         interval: Interval,
     ) -> Option<TriangleHit> {
@@ -183,7 +183,7 @@ impl<'a> LeafTest<'a> {
 
     #[cold]
     #[inline(never)]
-    fn hit<P: PrecisionMode>(&self, leaf: &Leaf<'_>, lane: u32, interval: Interval) -> Option<TriangleHit> {
+    fn hit<P: PrecisionMode>(&self, leaf: &F::Leaf<'_>, lane: u32, interval: Interval) -> Option<TriangleHit> {
         self.ray.hit::<P>(&leaf.triangle(lane as usize), interval)
     }
 
@@ -210,7 +210,7 @@ impl<'a> LeafTest<'a> {
 }
 
 #[inline(always)]
-fn from_origin<S: Simd>(simd: S, leaf: &Leaf<'_>, axis: usize, origin: S::F32x8) -> Corners<S> {
+fn from_origin<S: Simd>(simd: S, leaf: &impl LeafTriangles, axis: usize, origin: S::F32x8) -> Corners<S> {
     let [a, b, c] = leaf.rows(axis);
     [simd.sub(simd.load(a), origin), simd.sub(simd.load(b), origin), simd.sub(simd.load(c), origin)]
 }

@@ -1,47 +1,106 @@
-//! The triangles of all leaves, each leaf by coordinate: what one load brings is one coordinate of all its triangles.
+//! The triangles of all leaves, in a form that kernels and builder are generic over; and the ordinary form, each leaf by
+//! coordinate: what one load brings is one coordinate of all its triangles.
+
+use std::marker::PhantomData;
 
 use super::node::Child;
 use crate::accel::build_context::slices;
 use crate::accel::reference::{Reference, TriangleSource};
 use crate::accel::{BuildContext, BuildFailure, ClosestHit};
 use crate::geometry::Triangle;
-use crate::simd::LANES;
+use crate::simd::{LANES, Simd};
 
-/// Floats that a triangle takes: three vertices and an id.
-const WORDS: usize = 10;
-/// What a leaf reads at the most, its rows loaded as eight: so the compiler sees that every row is inside. The axis
-/// counts as 2 bits.
-const WINDOW: usize = (3 * 3 + 2) * LANES + LANES;
+/// How the triangles of a leaf are stored.
+pub(crate) trait LeafForm: Copy + Send + Sync {
+    type Leaf<'a>: LeafTriangles;
 
-// Counted in words, the place of every leaf that a reference can name fits 32 bits; its bytes are beyond 4 GiB.
-const _: () = assert!(Child::MOST_TRIANGLES <= (u32::MAX as usize - WINDOW) / WORDS);
+    /// What a reference to a leaf counts in.
+    const PLACE_WORDS: usize;
+    /// However few vertices they share, so many triangles have places that a reference can name.
+    const MOST_TRIANGLES: usize;
 
-pub(super) struct Leaves {
-    /// A leaf of n triangles from the i-th on has the words from 10 i on: nine rows of n coordinates (x, y, z; first,
-    /// second, third vertex each), then n ids as bits. More words at the end, so that the last leaf has a whole window.
+    /// Room for so many places, and beyond them for what the last leaf's kernel may read.
+    fn words(place_count: usize, context: &BuildContext) -> Result<Vec<f32>, BuildFailure>;
+
+    /// How many places a leaf takes.
+    fn size(references: &[Reference], source: &impl TriangleSource) -> usize;
+
+    /// How many places a subtree's leaves take.
+    fn subtree_size<'r>(
+        references: &[Reference],
+        leaves: impl Iterator<Item = &'r [Reference]>,
+        source: &impl TriangleSource,
+    ) -> usize;
+
+    /// Where a leaf goes that begins with the `first`-th of its subtree's triangles, when the leaf before ended at `next`.
+    fn place(first: usize, next: usize) -> usize;
+
+    /// Writes a leaf, and returns how many places it takes.
+    fn write(
+        words: &mut [f32],
+        place: usize,
+        references: &[Reference],
+        ids: &Ids,
+        source: &impl TriangleSource,
+    ) -> usize;
+
+    /// The leaf whose words come first.
+    fn leaf(words: &[f32], count: usize) -> Self::Leaf<'_>;
+}
+
+/// A leaf as a kernel reads it.
+pub(crate) trait LeafTriangles: Copy {
+    /// The leaf with its rows in place.
+    fn unpacked<S: Simd>(self, simd: S) -> Self;
+
+    /// One coordinate of the three vertices of all triangles; what lies beyond the last one has no meaning. Of a leaf
+    /// that is unpacked.
+    fn rows(&self, axis: usize) -> [&[f32; LANES]; 3];
+
+    /// Bit `i` for triangle `i`.
+    fn mask(&self) -> u32;
+
+    /// One coordinate of the three vertices of one triangle.
+    fn corners(&self, axis: usize, lane: usize) -> [f32; 3];
+
+    /// Geometry and primitive as one number.
+    fn id(&self, lane: usize) -> u32;
+
+    /// With geometry and primitive joined into one number, in place of the primitive: [`Leaves::resolve`] separates
+    /// them.
+    #[inline(always)]
+    fn triangle(&self, lane: usize) -> Triangle {
+        Triangle {
+            axes: [self.corners(0, lane), self.corners(1, lane), self.corners(2, lane)],
+            geometry_id: 0,
+            primitive_id: self.id(lane),
+        }
+    }
+}
+
+pub(super) struct Leaves<F> {
     words: Vec<f32>,
     leaf_count: usize,
     triangle_count: usize,
     ids: Ids,
+    form: PhantomData<F>,
 }
 
-/// A leaf as a kernel reads it.
-#[derive(Clone, Copy)]
-pub(super) struct Leaf<'a> {
-    words: &'a [f32; WINDOW],
-    count: usize,
-}
-
-impl Leaves {
-    /// Room for so many triangles, to be filled leaf by leaf.
-    pub(super) fn filled(triangle_count: usize, ids: Ids, context: &BuildContext) -> Result<Self, BuildFailure> {
-        let words = context.filled(triangle_count + WINDOW.div_ceil(WORDS), [0.0; WORDS])?.into_flattened();
-        Ok(Self { words, leaf_count: 0, triangle_count, ids })
+impl<F: LeafForm> Leaves<F> {
+    /// Room for so many places, to be filled leaf by leaf.
+    pub(super) fn filled(
+        place_count: usize,
+        triangle_count: usize,
+        ids: Ids,
+        context: &BuildContext,
+    ) -> Result<Self, BuildFailure> {
+        let words = F::words(place_count, context)?;
+        Ok(Self { words, leaf_count: 0, triangle_count, ids, form: PhantomData })
     }
 
-    /// The words of runs of so many triangles each, and the ids to write into them.
-    pub(super) fn parts(&mut self, triangle_counts: &[usize]) -> (Vec<&mut [f32]>, &Ids) {
-        let word_counts: Vec<usize> = triangle_counts.iter().map(|count| count * WORDS).collect();
+    /// The words of runs of so many places each, and the ids to write into them.
+    pub(super) fn parts(&mut self, place_counts: &[usize]) -> (Vec<&mut [f32]>, &Ids) {
+        let word_counts: Vec<usize> = place_counts.iter().map(|count| count * F::PLACE_WORDS).collect();
         (slices(&mut self.words, &word_counts), &self.ids)
     }
 
@@ -50,15 +109,14 @@ impl Leaves {
     }
 
     #[inline(always)]
-    pub(super) fn leaf(&self, (first, count): (usize, usize)) -> Leaf<'_> {
-        let words = self.words[first * WORDS..].first_chunk().expect("the words end with a whole window");
-        Leaf { words, count }
+    pub(super) fn leaf(&self, (place, count): (usize, usize)) -> F::Leaf<'_> {
+        F::leaf(&self.words[place * F::PLACE_WORDS..], count)
     }
 
     /// Where a leaf's words are, for a prefetch.
     #[inline(always)]
-    pub(super) fn address(&self, (first, _): (usize, usize)) -> *const u8 {
-        self.words.as_ptr().wrapping_add(first * WORDS).cast()
+    pub(super) fn address(&self, (place, _): (usize, usize)) -> *const u8 {
+        self.words.as_ptr().wrapping_add(place * F::PLACE_WORDS).cast()
     }
 
     pub(super) fn leaf_count(&self) -> usize {
@@ -86,56 +144,101 @@ impl Leaves {
     }
 }
 
-/// Writes a leaf that begins with the `first`-th of the triangles that the words are for.
-pub(super) fn write(
-    words: &mut [f32],
-    first: usize,
-    references: &[Reference],
-    ids: &Ids,
-    source: &impl TriangleSource,
-) {
-    let count = references.len();
-    let words = &mut words[first * WORDS..][..count * WORDS];
-    for (lane, reference) in references.iter().enumerate() {
-        let triangle = reference.triangle(source);
-        for (row, coordinate) in triangle.axes.as_flattened().iter().enumerate() {
-            words[row * count + lane] = *coordinate;
+/// A leaf of n triangles, of which the first is the scene's i-th, has the words from 10 i on: nine rows of n coordinates
+/// (x, y, z; first, second, third vertex each), then n ids as bits.
+#[derive(Clone, Copy)]
+pub(crate) struct ByAxis;
+
+/// Floats that a triangle takes: three vertices and an id.
+const WORDS: usize = 10;
+/// What a leaf reads at the most, its rows loaded as eight: so the compiler sees that every row is inside. The axis
+/// counts as 2 bits.
+const WINDOW: usize = (3 * 3 + 2) * LANES + LANES;
+
+// Counted in words, the place of every leaf that a reference can name fits 32 bits; its bytes are beyond 4 GiB.
+const _: () = assert!(Child::MOST_PLACES <= (u32::MAX as usize - WINDOW) / WORDS);
+
+/// One in the form [`ByAxis`].
+#[derive(Clone, Copy)]
+pub(crate) struct Leaf<'a> {
+    words: &'a [f32; WINDOW],
+    count: usize,
+}
+
+impl LeafForm for ByAxis {
+    type Leaf<'a> = Leaf<'a>;
+
+    const PLACE_WORDS: usize = WORDS;
+    const MOST_TRIANGLES: usize = Child::MOST_PLACES;
+
+    fn words(place_count: usize, context: &BuildContext) -> Result<Vec<f32>, BuildFailure> {
+        Ok(context.filled(place_count + WINDOW.div_ceil(WORDS), [0.0; WORDS])?.into_flattened())
+    }
+
+    fn size(references: &[Reference], _source: &impl TriangleSource) -> usize {
+        references.len()
+    }
+
+    fn subtree_size<'r>(
+        references: &[Reference],
+        _leaves: impl Iterator<Item = &'r [Reference]>,
+        _source: &impl TriangleSource,
+    ) -> usize {
+        references.len()
+    }
+
+    fn place(first: usize, _next: usize) -> usize {
+        first
+    }
+
+    fn write(
+        words: &mut [f32],
+        place: usize,
+        references: &[Reference],
+        ids: &Ids,
+        source: &impl TriangleSource,
+    ) -> usize {
+        let count = references.len();
+        let words = &mut words[place * WORDS..][..count * WORDS];
+        for (lane, reference) in references.iter().enumerate() {
+            let triangle = reference.triangle(source);
+            for (row, coordinate) in triangle.axes.as_flattened().iter().enumerate() {
+                words[row * count + lane] = *coordinate;
+            }
+            words[(WORDS - 1) * count + lane] = f32::from_bits(ids.joined(reference));
         }
-        words[(WORDS - 1) * count + lane] = f32::from_bits(ids.joined(reference));
+        count
+    }
+
+    #[inline(always)]
+    fn leaf(words: &[f32], count: usize) -> Leaf<'_> {
+        Leaf { words: words.first_chunk().expect("the words end with a whole window"), count }
     }
 }
 
-impl<'a> Leaf<'a> {
-    /// One coordinate of the three vertices of all triangles; what lies beyond the last one has no meaning.
+impl LeafTriangles for Leaf<'_> {
+    /// They are always.
     #[inline(always)]
-    pub(super) fn rows(&self, axis: usize) -> [&'a [f32; LANES]; 3] {
+    fn unpacked<S: Simd>(self, _simd: S) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn rows(&self, axis: usize) -> [&[f32; LANES]; 3] {
         let rows: &[f32; 3 * LANES] = array(self.words, 3 * (axis & 3) * self.count);
         [array(rows, 0), array(rows, self.count), array(rows, 2 * self.count)]
     }
 
-    /// Bit `i` for triangle `i`.
     #[inline(always)]
-    pub(super) fn mask(&self) -> u32 {
+    fn mask(&self) -> u32 {
         (1 << self.count) - 1
     }
 
-    /// One coordinate of the three vertices of one triangle.
     #[inline(always)]
-    pub(super) fn corners(&self, axis: usize, lane: usize) -> [f32; 3] {
+    fn corners(&self, axis: usize, lane: usize) -> [f32; 3] {
         // What the compiler sees is inside the window.
         let first = 3 * (axis & 3) * self.count + lane % LANES;
         [self.words[first], self.words[first + self.count], self.words[first + 2 * self.count]]
-    }
-
-    /// With geometry and primitive joined into one number, in place of the primitive: [`Leaves::resolve`] separates
-    /// them.
-    #[inline(always)]
-    pub(super) fn triangle(&self, lane: usize) -> Triangle {
-        Triangle {
-            axes: [self.corners(0, lane), self.corners(1, lane), self.corners(2, lane)],
-            geometry_id: 0,
-            primitive_id: self.id(lane),
-        }
     }
 
     #[inline(always)]
@@ -145,7 +248,7 @@ impl<'a> Leaf<'a> {
 }
 
 /// Geometry and primitive as one number, in the order of `(geometry_id, primitive_id)`.
-pub(super) struct Ids {
+pub(crate) struct Ids {
     /// Where each geometry's numbers begin; at the end where the last one's stop.
     starts: Vec<u32>,
     /// For each bucket of `1 << bucket_bits` numbers the geometry that has its first one, and the same for where the
@@ -166,7 +269,7 @@ impl Ids {
         ids
     }
 
-    fn joined(&self, reference: &Reference) -> u32 {
+    pub(super) fn joined(&self, reference: &Reference) -> u32 {
         self.starts[reference.geometry_id() as usize] + reference.primitive_id()
     }
 

@@ -6,6 +6,7 @@
 
 mod box_test;
 mod collapse;
+mod compact_leaves;
 mod leaf_test;
 mod leaves;
 mod node;
@@ -17,8 +18,9 @@ mod traverse;
 mod validate;
 mod wavefront;
 
+pub(crate) use compact_leaves::Compact;
 use glam::Vec4;
-use leaves::Leaves;
+use leaves::{ByAxis, LeafForm, Leaves};
 use node::{Child, WideNode};
 use wavefront::Wavefront;
 
@@ -29,18 +31,19 @@ use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
 use crate::geometry::{Aabb, PrecisionMode, Ray};
 use crate::simd::{Simd, prefetch_lines};
 
-pub(crate) struct WideBvh {
+/// The form of its leaves makes no difference to what it answers.
+pub(crate) struct WideBvh<F = ByAxis> {
     bounds: Aabb,
     /// Of the bounds, as rays want them.
     corners: [Vec4; 2],
     root: Child,
     nodes: Vec<WideNode>,
-    leaves: Leaves,
+    leaves: Leaves<F>,
     depth: u32,
     sah_cost: f64,
 }
 
-impl WideBvh {
+impl<F: LeafForm> WideBvh<F> {
     /// At least one reference; `bounds` contains them all.
     pub(crate) fn build(
         mut references: Vec<Reference>,
@@ -50,7 +53,7 @@ impl WideBvh {
         context: &BuildContext,
     ) -> Result<Self, BuildFailure> {
         let count = references.len();
-        check_count(count)?;
+        check_count::<F>(count)?;
         context.expect(2 * count);
         let rule = match quality {
             Quality::Low => &BinnedSah::FOR_WIDE_LEAVES_SOON,
@@ -94,15 +97,54 @@ impl WideBvh {
     }
 }
 
-fn check_count(count: usize) -> Result<(), BuildFailure> {
-    let limit = Child::MOST_TRIANGLES;
+fn check_count<F: LeafForm>(count: usize) -> Result<(), BuildFailure> {
+    let limit = F::MOST_TRIANGLES;
     if count > limit { Err(BuildFailure::TooManyTriangles { count, limit }) } else { Ok(()) }
 }
 
+/// A hierarchy that instruction sets query.
+pub(crate) trait Vectorize {
+    type On<'a, S: Simd>: Accel + Sync
+    where
+        Self: 'a;
+
+    fn on<S: Simd>(&self, simd: S) -> Self::On<'_, S>;
+}
+
 /// The hierarchy as an instruction set queries it.
-pub(crate) struct Vectorized<'a, S> {
-    pub(crate) bvh: &'a WideBvh,
-    pub(crate) simd: S,
+pub(crate) struct Vectorized<'a, S, F = ByAxis> {
+    bvh: &'a WideBvh<F>,
+    simd: S,
+}
+
+impl Vectorize for WideBvh {
+    type On<'a, S: Simd> = Vectorized<'a, S>;
+
+    #[inline(always)]
+    fn on<S: Simd>(&self, simd: S) -> Vectorized<'_, S> {
+        Vectorized { bvh: self, simd }
+    }
+}
+
+impl Vectorize for WideBvh<Compact> {
+    type On<'a, S: Simd> = Vectorized<'a, S, Compact>;
+
+    #[inline(always)]
+    fn on<S: Simd>(&self, simd: S) -> Vectorized<'_, S, Compact> {
+        Vectorized { bvh: self, simd }
+    }
+}
+
+/// Batches go ray by ray.
+impl<S: Simd> Accel for Vectorized<'_, S, Compact> {
+    #[inline(always)]
+    fn query<Q: Query, P: PrecisionMode, R>(
+        &self,
+        ray: impl Into<Ray>,
+        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
+    ) -> R {
+        self.simd.vectorize(traverse::Traversal::<Q, P, _, _, _>::new(self.bvh, ray, then))
+    }
 }
 
 impl<S: Simd> Accel for Vectorized<'_, S> {
@@ -112,7 +154,7 @@ impl<S: Simd> Accel for Vectorized<'_, S> {
         ray: impl Into<Ray>,
         then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
     ) -> R {
-        self.simd.vectorize(traverse::Traversal::<Q, P, _, _>::new(self.bvh, ray, then))
+        self.simd.vectorize(traverse::Traversal::<Q, P, _, _, _>::new(self.bvh, ray, then))
     }
 
     fn query_runs<'r, Q, P, R, T>(

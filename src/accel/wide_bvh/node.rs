@@ -4,17 +4,17 @@ use crate::simd::LANES;
 
 /// A child: a node, or a leaf with its triangles.
 ///
-/// Bit 31 says leaf. A leaf has the number of its triangles, less one, in bits 28 to 30, and its first triangle
-/// below; a node its index.
+/// Bit 31 says leaf. A leaf has the number of its triangles, less one, in bits 28 to 30, and its place below; a node its
+/// index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub(super) struct Child(u32);
 
 impl Child {
     const LEAF: u32 = 1 << 31;
-    const FIRST_BITS: u32 = 28;
-    /// How many triangles a leaf's 28 bits can tell apart.
-    pub(super) const MOST_TRIANGLES: usize = 1 << Self::FIRST_BITS;
+    const PLACE_BITS: u32 = 28;
+    /// How many places of leaves 28 bits can tell apart.
+    pub(super) const MOST_PLACES: usize = 1 << Self::PLACE_BITS;
 
     /// No child. As a node it would be the last of more than there can be.
     pub(super) const NONE: Self = Self(Self::LEAF - 1);
@@ -24,9 +24,9 @@ impl Child {
         Self(index as u32)
     }
 
-    pub(super) fn leaf(first: usize, count: usize) -> Self {
-        debug_assert!(first < Self::MOST_TRIANGLES && (1..=LANES).contains(&count));
-        Self(Self::LEAF | ((count as u32 - 1) << Self::FIRST_BITS) | first as u32)
+    pub(super) fn leaf(place: usize, count: usize) -> Self {
+        debug_assert!(place < Self::MOST_PLACES && (1..=LANES).contains(&count));
+        Self(Self::LEAF | ((count as u32 - 1) << Self::PLACE_BITS) | place as u32)
     }
 
     #[inline(always)]
@@ -49,12 +49,12 @@ impl Child {
         self.0 as usize
     }
 
-    /// A leaf's first triangle and the number of them.
+    /// A leaf's place and the number of its triangles.
     #[inline(always)]
     pub(super) fn triangles(self) -> (usize, usize) {
-        let first = self.0 & ((1 << Self::FIRST_BITS) - 1);
-        let count = ((self.0 >> Self::FIRST_BITS) & 7) + 1;
-        (first as usize, count as usize)
+        let place = self.0 & ((1 << Self::PLACE_BITS) - 1);
+        let count = ((self.0 >> Self::PLACE_BITS) & 7) + 1;
+        (place as usize, count as usize)
     }
 }
 
@@ -95,19 +95,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn leaf_reference_holds_its_first_triangle_and_its_count_at_their_limits() {
-        for first in [0, 1, Child::MOST_TRIANGLES - 1] {
+    fn leaf_reference_holds_its_place_and_its_count_at_their_limits() {
+        for place in [0, 1, Child::MOST_PLACES - 1] {
             for count in 1..=LANES {
-                let child = Child::leaf(first, count);
+                let child = Child::leaf(place, count);
                 assert!(child.is_leaf());
-                assert_eq!(child.triangles(), (first, count));
+                assert_eq!(child.triangles(), (place, count));
             }
         }
     }
 
     #[test]
     fn node_reference_holds_its_index_at_its_limits() {
-        for index in [0, 1, Child::MOST_TRIANGLES, (1 << 31) - 2] {
+        for index in [0, 1, Child::MOST_PLACES, (1 << 31) - 2] {
             let child = Child::node(index);
             assert!(!child.is_leaf());
             assert_eq!(child.node_index(), index);

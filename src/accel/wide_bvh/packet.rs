@@ -10,7 +10,7 @@ use arrayvec::ArrayVec;
 use glam::Vec3A;
 
 use super::WideBvh;
-use super::leaves::Leaf;
+use super::leaves::{Leaf, LeafTriangles};
 use super::node::{Child, WideNode};
 use super::wavefront::{Corners, differ_in_sign, is_fit, shear, spans, weights};
 use crate::accel::bvh::node::MOST_LEVELS;

@@ -2,8 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use super::leaves::{ByAxis, LeafForm, LeafTriangles};
 use super::node::Child;
-use super::{WideBvh, check_count};
+use super::{Compact, WideBvh, check_count};
 use crate::accel::{BuildContext, BuildFailure, Quality, Reference, TriangleSource, Watch};
 use crate::geometry::{Aabb, Triangle};
 use crate::simd::Isa;
@@ -31,6 +32,10 @@ impl Soup {
     }
 
     fn build(&self, quality: Quality, isa: Isa, thread_count: usize) -> WideBvh {
+        self.build_in_form(quality, isa, thread_count)
+    }
+
+    fn build_in_form<F: LeafForm>(&self, quality: Quality, isa: Isa, thread_count: usize) -> WideBvh<F> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().expect("a few threads");
         let watch = Watch::default();
         let context = BuildContext::new((thread_count > 1).then_some(&pool), None, isa, &watch);
@@ -59,18 +64,76 @@ fn small_triangle(id: u32, size: f32) -> [[f32; 3]; 3] {
 
 const QUALITIES: [Quality; 3] = [Quality::Low, Quality::Medium, Quality::High];
 
-#[test]
-fn the_bytes_are_the_same_for_any_number_of_threads_and_any_instruction_set() {
+/// Whether threads and instruction sets make no difference to the bytes of a tree.
+fn check_bytes<F: LeafForm>() {
     let soup = Soup::new(60_000, |id| small_triangle(id, if id % 100 == 0 { 0.3 } else { 0.01 }));
     for quality in QUALITIES {
-        let expected = soup.build(quality, Isa::Scalar, 1);
+        let expected: WideBvh<F> = soup.build_in_form(quality, Isa::Scalar, 1);
         for (isa, thread_count) in [(Isa::Auto, 1), (Isa::Sse42, 2), (Isa::Auto, 2), (Isa::Auto, 3)] {
-            let other = soup.build(quality, isa, thread_count);
+            let other: WideBvh<F> = soup.build_in_form(quality, isa, thread_count);
             let is_same = other.root == expected.root
                 && format!("{:?}", other.nodes) == format!("{:?}", expected.nodes)
                 && other.leaves.bits().eq(expected.leaves.bits());
             assert!(is_same, "{quality:?} {isa:?} {thread_count} threads");
         }
+    }
+}
+
+#[test]
+fn the_bytes_are_the_same_for_any_number_of_threads_and_any_instruction_set() {
+    check_bytes::<ByAxis>();
+    check_bytes::<Compact>();
+}
+
+/// A height field of `side` times `side` vertices, two triangles a cell.
+fn height_field(side: u32) -> Soup {
+    let vertex = |x: u32, y: u32| [x as f32, y as f32, random(x + side * y)];
+    Soup::new(2 * (side - 1) * (side - 1), |id| {
+        let (x, y) = (id / 2 % (side - 1), id / 2 / (side - 1));
+        let (right, above) = (vertex(x + 1, y), vertex(x, y + 1));
+        if id % 2 == 0 { [vertex(x, y), right, above] } else { [vertex(x + 1, y + 1), above, right] }
+    })
+}
+
+/// The children that are leaves.
+fn leaves_of<F: LeafForm>(bvh: &WideBvh<F>) -> Vec<Child> {
+    let (mut found, mut pending) = (Vec::new(), vec![bvh.root]);
+    while let Some(child) = pending.pop() {
+        if child.is_leaf() {
+            found.push(child);
+            continue;
+        }
+        let node = &bvh.nodes[child.node_index()];
+        pending.extend(
+            (0..8).filter(|&slot| node.planes[0][0][slot] <= node.planes[0][1][slot]).map(|slot| node.children[slot]),
+        );
+    }
+    found
+}
+
+#[test]
+fn compact_leaves_hold_each_triangle_once_and_within_36_bytes() {
+    let soup = height_field(200);
+    for quality in QUALITIES {
+        let bvh: WideBvh<Compact> = soup.build_in_form(quality, Isa::Auto, 2);
+        let mut seen = vec![false; soup.triangles.len()];
+        for child in leaves_of(&bvh) {
+            let leaf = bvh.leaves.leaf(child.triangles());
+            for lane in 0..child.triangles().1 {
+                let triangle = leaf.triangle(lane);
+                assert_eq!(triangle.axes, soup.triangles[triangle.primitive_id as usize].axes);
+                assert!(
+                    !std::mem::replace(&mut seen[triangle.primitive_id as usize], true),
+                    "{triangle:?} is there twice"
+                );
+            }
+        }
+        assert!(seen.iter().all(|&seen| seen));
+        let ordinary = soup.build(quality, Isa::Auto, 2);
+        let (shape, ordinary) = (bvh.shape(), ordinary.shape());
+        assert_eq!((shape.node_bytes, shape.sah_cost), (ordinary.node_bytes, ordinary.sah_cost));
+        let bytes = (shape.node_bytes + shape.leaf_bytes) as f64 / soup.triangles.len() as f64;
+        assert!(bytes <= 36.0, "{quality:?}: {bytes} bytes a triangle");
     }
 }
 
@@ -130,8 +193,11 @@ fn hard_arrangements_build_in_time() {
 
 #[test]
 fn more_triangles_than_references_can_name_are_refused_with_both_numbers() {
-    let limit = Child::MOST_TRIANGLES;
-    assert_eq!(limit, 1 << 28);
-    assert_eq!(check_count(limit), Ok(()));
-    assert_eq!(check_count(limit + 1), Err(BuildFailure::TooManyTriangles { count: limit + 1, limit }));
+    assert_eq!(ByAxis::MOST_TRIANGLES, 1 << 28);
+    let limit = ByAxis::MOST_TRIANGLES;
+    assert_eq!(check_count::<ByAxis>(limit), Ok(()));
+    assert_eq!(check_count::<ByAxis>(limit + 1), Err(BuildFailure::TooManyTriangles { count: limit + 1, limit }));
+    let limit = Compact::MOST_TRIANGLES;
+    assert_eq!(check_count::<Compact>(limit), Ok(()));
+    assert_eq!(check_count::<Compact>(limit + 1), Err(BuildFailure::TooManyTriangles { count: limit + 1, limit }));
 }

@@ -8,6 +8,7 @@ use arrayvec::ArrayVec;
 use super::WideBvh;
 use super::box_test::{BoxTest, Boxes, Oblique, Plain};
 use super::leaf_test::{Best, LeafTest};
+use super::leaves::LeafForm;
 use super::node::{Child, WideNode};
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::accel::leaf::{ClosestHit, Query};
@@ -47,24 +48,25 @@ type Stack = ArrayVec<Pending, MOST_PENDING>;
 #[repr(align(32))]
 struct Aligned<T>(T);
 
-pub(super) struct Traversal<'a, Q, P, I, T> {
-    bvh: &'a WideBvh,
+pub(super) struct Traversal<'a, Q, P, F, I, T> {
+    bvh: &'a WideBvh<F>,
     ray: I,
     then: T,
     choices: PhantomData<(Q, P)>,
 }
 
-impl<'a, Q, P, I, T> Traversal<'a, Q, P, I, T> {
+impl<'a, Q, P, F, I, T> Traversal<'a, Q, P, F, I, T> {
     #[inline(always)]
-    pub(super) fn new(bvh: &'a WideBvh, ray: I, then: T) -> Self {
+    pub(super) fn new(bvh: &'a WideBvh<F>, ray: I, then: T) -> Self {
         Self { bvh, ray, then, choices: PhantomData }
     }
 }
 
-impl<Q, P, I, R, T> SimdKernel for Traversal<'_, Q, P, I, T>
+impl<Q, P, F, I, R, T> SimdKernel for Traversal<'_, Q, P, F, I, T>
 where
     Q: Query,
     P: PrecisionMode,
+    F: LeafForm,
     I: Into<Ray>,
     T: FnOnce(Option<ClosestHit>, Q::Tally) -> R,
 {
@@ -77,7 +79,7 @@ where
         match ObliqueSlabs::new(&ray, &bvh.corners) {
             Some(slabs) => {
                 let mut stack = Aligned(Stack::new_const());
-                let mut walk = Walk::<Q>::new(bvh, &ray, &mut stack.0);
+                let mut walk = Walk::<Q, F>::new(bvh, &ray, &mut stack.0);
                 let found = walk.run::<P, S, _>(simd, &Oblique::new(slabs));
                 then(found, walk.tally)
             }
@@ -88,10 +90,10 @@ where
 }
 
 /// A ray that runs along a plane, or of unusual length, or from behind its origin, or not valid.
-struct AlongPlanes<'a, Q, P, T>(Traversal<'a, Q, P, Ray, T>);
+struct AlongPlanes<'a, Q, P, F, T>(Traversal<'a, Q, P, F, Ray, T>);
 
-impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R> SimdKernel
-    for AlongPlanes<'_, Q, P, T>
+impl<Q: Query, P: PrecisionMode, F: LeafForm, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R> SimdKernel
+    for AlongPlanes<'_, Q, P, F, T>
 {
     type Output = R;
 
@@ -103,7 +105,7 @@ impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R
         }
         let mut stack = Aligned(Stack::new_const());
         let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
-        let mut walk = Walk::<Q>::new(bvh, &ray, &mut stack.0);
+        let mut walk = Walk::<Q, F>::new(bvh, &ray, &mut stack.0);
         walk.triangles.check_range();
         let found = walk.run::<P, S, _>(simd, &boxes);
         then(found, walk.tally)
@@ -111,17 +113,17 @@ impl<Q: Query, P: PrecisionMode, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R
 }
 
 /// A ray on its way through the tree.
-struct Walk<'a, Q: Query> {
-    bvh: &'a WideBvh,
+struct Walk<'a, Q: Query, F> {
+    bvh: &'a WideBvh<F>,
     stack: &'a mut Stack,
-    triangles: LeafTest<'a>,
+    triangles: LeafTest<'a, F>,
     best: Best,
     tally: Q::Tally,
 }
 
-impl<'a, Q: Query> Walk<'a, Q> {
+impl<'a, Q: Query, F: LeafForm> Walk<'a, Q, F> {
     #[inline(always)]
-    fn new(bvh: &'a WideBvh, ray: &Ray, stack: &'a mut Stack) -> Self {
+    fn new(bvh: &'a WideBvh<F>, ray: &Ray, stack: &'a mut Stack) -> Self {
         stack.push(Pending::new(0, bvh.root));
         Self { bvh, stack, triangles: LeafTest::new(bvh, ray), best: Best::none(ray), tally: Q::Tally::default() }
     }
@@ -169,7 +171,7 @@ impl<'a, Q: Query> Walk<'a, Q> {
                 } else if Q::FIRST_HIT_ENDS {
                     wait_in_any_order(bvh, node, first, hits, self.stack)
                 } else {
-                    wait_in_order::<B>(bvh, node, first, hits, &simd.store(enter), self.stack)
+                    wait_in_order::<F, B>(bvh, node, first, hits, &simd.store(enter), self.stack)
                 };
             }
         }
@@ -186,7 +188,13 @@ fn next_slot(hits: &mut u32) -> usize {
 
 /// The largest box first, which is the last one; the others wait.
 #[inline(always)]
-fn wait_in_any_order(bvh: &WideBvh, node: &WideNode, first: usize, mut hits: u32, stack: &mut Stack) -> Child {
+fn wait_in_any_order(
+    bvh: &WideBvh<impl LeafForm>,
+    node: &WideNode,
+    first: usize,
+    mut hits: u32,
+    stack: &mut Stack,
+) -> Child {
     let mut child = node.children[first];
     while hits != 0 {
         bvh.prefetch(child);
@@ -198,8 +206,8 @@ fn wait_in_any_order(bvh: &WideBvh, node: &WideNode, first: usize, mut hits: u32
 
 /// The child that the ray enters first; the others wait, in their order.
 #[inline(always)]
-fn wait_in_order<B: Boxes>(
-    bvh: &WideBvh,
+fn wait_in_order<F: LeafForm, B: Boxes>(
+    bvh: &WideBvh<F>,
     node: &WideNode,
     first: usize,
     mut hits: u32,

@@ -2,12 +2,13 @@
 
 use super::WideBvh;
 use super::collapse::{LEAF_COST, NODE_COST};
+use super::leaves::{LeafForm, LeafTriangles};
 use super::node::Child;
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::geometry::Aabb;
 use crate::simd::LANES;
 
-impl WideBvh {
+impl<F: LeafForm> WideBvh<F> {
     /// Every box contains what is below it, every leaf and node is reached once, and the stack suffices.
     pub(crate) fn validate(&self) -> Result<(), String> {
         let (mut node_seen, mut leaf_count, mut deepest) = (vec![false; self.nodes.len()], 0, 0);

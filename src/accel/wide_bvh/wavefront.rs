@@ -13,7 +13,7 @@ use std::time::Instant;
 use glam::Vec3A;
 
 use super::WideBvh;
-use super::leaves::Leaf;
+use super::leaves::{Leaf, LeafTriangles};
 use super::node::{Child, WideNode};
 use super::packet::{PACKET, Packet, Spread};
 use super::traverse::Traversal;
@@ -369,7 +369,7 @@ where
                     source.answer_packets::<Q, P, S>(simd, bvh, &answer);
                 }
                 let Some((ray, place)) = source.next() else { return };
-                simd.vectorize(Traversal::<Q, P, _, _>::new(bvh, ray, |found, _| answer(place, found)));
+                simd.vectorize(Traversal::<Q, P, _, _, _>::new(bvh, ray, |found, _| answer(place, found)));
             }
             if !source.next_run() {
                 return;
@@ -430,7 +430,7 @@ where
                 return true;
             }
             let answer = &self.answer;
-            simd.vectorize(Traversal::<Q, P, _, _>::new(self.bvh, source, |found, _| answer(place, found)));
+            simd.vectorize(Traversal::<Q, P, _, _, _>::new(self.bvh, source, |found, _| answer(place, found)));
         }
     }
 
