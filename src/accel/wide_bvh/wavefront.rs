@@ -774,7 +774,7 @@ impl<S: Simd> Spans<S> {
 /// `e = 2 u (n + m) + 4 u m` at most (`triangle_hit.rs`), which moves the three weights by `2 e s + 6 e^2` together;
 /// and their own roundings by `u s^2 / 2`. Weights that move by d together move the depth that they interpolate, where
 /// their sum is w, by no more than `2 d / w` of the range of the depths; or else by no more than that range, which
-/// this then exceeds. The interpolation's own roundings add less than `16 u m`. The factors below are a little larger
+/// this then exceeds. The interpolation's own roundings, and those of FAST's, add less than `24 u m`. The factors below are a little larger
 /// for the roundings of the bound itself; absolute terms cover underflow.
 #[inline(always)]
 pub(super) fn spans<S: Simd>(
@@ -806,7 +806,7 @@ pub(super) fn spans<S: Simd>(
     let weighted = simd.add(simd.add(simd.mul(a, z[0]), simd.mul(b, z[1])), simd.mul(c, z[2]));
     let depth = simd.mul(weighted, inverse_sum);
     let moved = simd.mul(simd.mul(weight_error, abs(simd, inverse_sum)), simd.sub(farthest, nearest));
-    let depth_error = simd.add(simd.add(moved, simd.mul(unit(16.0), most)), simd.splat(LEAST_DEPTH));
+    let depth_error = simd.add(simd.add(moved, simd.mul(unit(24.0), most)), simd.splat(LEAST_DEPTH));
 
     let (first, last) = (simd.mul(nearest, inverse_depth), simd.mul(farthest, inverse_depth));
     let slack = simd.add(
