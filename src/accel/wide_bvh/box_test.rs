@@ -130,9 +130,11 @@ impl Boxes for Plain {
         t * self.slabs.time_scale
     }
 
-    /// The bits of negative floats have the opposite order, and come after all others.
+    /// The bits of negative floats have the opposite order, and come after all others. Of two zeros the positive one is
+    /// taken, for they are equal.
     #[inline(always)]
     fn order(distance: f32) -> u32 {
+        let distance = distance + 0.0;
         let bits = distance.to_bits();
         if distance.is_sign_negative() { !bits } else { bits | 1 << 31 }
     }

@@ -45,7 +45,7 @@ pub(super) struct Candidates {
     pub(super) lanes: u32,
     /// Those of them that the scalar test surely takes, somewhere.
     sure: u32,
-    /// Those that the ray meets after `t_min` and before the best hit, if it meets them.
+    /// Those that the ray surely meets after `t_min` and before the best hit, if they are taken.
     inside: u32,
 }
 
@@ -162,7 +162,11 @@ impl<'a, F: LeafForm> LeafTest<'a, F> {
         let (first, last) = (simd.sub(first, slack), simd.add(last, slack));
         let t_max = simd.splat(t_max);
         lanes &= !(simd.less(last, t_min) | simd.less(t_max, first));
-        let inside = simd.less_or_equal(t_min, first) & simd.less_or_equal(last, t_max);
+        // A hit has a finite t. Where edge functions overflow they may have made a NaN, which nothing above keeps.
+        let latest = simd.min(t_max, simd.splat(f32::MAX));
+        let overflow = simd.mul(simd.add(a, simd.add(b, c)), zero);
+        let is_finite = simd.less_or_equal(overflow, zero);
+        let inside = is_finite & simd.less_or_equal(t_min, first) & simd.less_or_equal(last, latest);
         Candidates { lanes, sure, inside }
     }
 
