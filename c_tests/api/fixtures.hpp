@@ -70,7 +70,8 @@ struct Unbuilt {
 };
 extern const std::vector<Unbuilt> kUnbuilt;
 
-/// Build options for each structure, the wide BVH compact too, quality, precision and ISA cap, with a name for the failure message.
+/// Build options for each structure, the wide BVH compact too, quality, precision and ISA cap, with a name for the failure
+/// message.
 struct Configuration {
     std::string name;
     GnomonBuildOptions options;

@@ -11,20 +11,13 @@ using Json = nlohmann::ordered_json;
 
 Json build_json(const SceneResult& scene, const BuildReport& build) {
     const double per_triangle = static_cast<double>(build.bytes) / static_cast<double>(build.triangles);
-    return {{"scene", scene.name},
-            {"triangles", build.triangles},
-            {"engine", build.engine},
-            {"structure", build.structure},
-            {"quality", build.quality},
-            {"precision", build.precision},
-            {"isa", build.isa},
-            {"compact", build.compact},
-            {"threads", build.threads},
-            {"seconds", build.seconds},
-            {"bytes", build.bytes},
-            {"bytes_per_triangle", number(per_triangle)},
-            {"nodes", build.nodes},
-            {"references", build.references},
+    return {{"scene", scene.name},      {"triangles", build.triangles},
+            {"engine", build.engine},   {"structure", build.structure},
+            {"quality", build.quality}, {"precision", build.precision},
+            {"isa", build.isa},         {"compact", build.compact},
+            {"threads", build.threads}, {"seconds", build.seconds},
+            {"bytes", build.bytes},     {"bytes_per_triangle", number(per_triangle)},
+            {"nodes", build.nodes},     {"references", build.references},
             {"depth", build.depth}};
 }
 
