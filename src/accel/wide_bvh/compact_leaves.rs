@@ -3,7 +3,7 @@
 
 use arrayvec::ArrayVec;
 
-use super::leaves::{Ids, LeafForm, LeafTriangles};
+use super::leaves::{Ids, LeafForm, LeafRows, LeafTriangles};
 use super::node::Child;
 use crate::accel::reference::{Reference, TriangleSource};
 use crate::accel::{BuildContext, BuildFailure};
@@ -17,8 +17,6 @@ pub(crate) struct Compact;
 /// One in the form [`Compact`].
 #[derive(Clone, Copy)]
 pub(crate) struct CompactLeaf<'a> {
-    /// Once it is unpacked, for each axis the coordinate of the first, second and third vertices.
-    rows: [[f32; LANES]; 9],
     header: &'a [f32; HEADER],
     coordinates: &'a [f32; REACH],
     count: usize,
@@ -145,24 +143,31 @@ impl LeafForm for Compact {
         let header: &[f32; HEADER] = words.first_chunk().expect("the words end with a whole window");
         let coordinates: &[f32; REACH] =
             words[index_words(count) + count..].first_chunk().expect("the words end with a whole window");
-        CompactLeaf { rows: [[0.0; LANES]; 9], header, coordinates, count }
+        CompactLeaf { header, coordinates, count }
+    }
+}
+
+/// For each axis the coordinate of the first, second and third vertices.
+pub(crate) struct CompactRows([[f32; LANES]; 9]);
+
+impl LeafRows for CompactRows {
+    #[inline(always)]
+    fn rows(&self, axis: usize) -> [&[f32; LANES]; 3] {
+        let first = 3 * (axis % 3);
+        [&self.0[first], &self.0[first + 1], &self.0[first + 2]]
     }
 }
 
 impl LeafTriangles for CompactLeaf<'_> {
+    type Rows = CompactRows;
+
     #[inline(always)]
-    fn unpacked<S: Simd>(self, simd: S) -> Self {
+    fn unpacked<S: Simd>(self, simd: S) -> CompactRows {
         let starts = starts(self.header, self.count);
         let [ax, ay, az] = corner::<0, S>(simd, &starts, self.coordinates);
         let [bx, by, bz] = corner::<1, S>(simd, &starts, self.coordinates);
         let [cx, cy, cz] = corner::<2, S>(simd, &starts, self.coordinates);
-        Self { rows: [ax, bx, cx, ay, by, cy, az, bz, cz], ..self }
-    }
-
-    #[inline(always)]
-    fn rows(&self, axis: usize) -> [&[f32; LANES]; 3] {
-        let first = 3 * (axis % 3);
-        [&self.rows[first], &self.rows[first + 1], &self.rows[first + 2]]
+        CompactRows([ax, bx, cx, ay, by, cy, az, bz, cz])
     }
 
     #[inline(always)]

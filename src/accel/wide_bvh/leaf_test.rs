@@ -6,7 +6,7 @@
 use glam::Vec4;
 
 use super::WideBvh;
-use super::leaves::{LeafForm, LeafTriangles};
+use super::leaves::{LeafForm, LeafRows, LeafTriangles};
 use super::node::Child;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
@@ -135,12 +135,13 @@ impl<'a, F: LeafForm> LeafTest<'a, F> {
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure, nor surely inside.
     #[inline(always)]
     pub(super) fn candidates<S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
-        let leaf = self.bvh.leaves.leaf(child.triangles()).unpacked(simd);
+        let leaf = self.bvh.leaves.leaf(child.triangles());
+        let rows = leaf.unpacked(simd);
         let ray = &self.ray;
         let [kx, ky, kz] = ray.axes;
-        let z = from_origin(simd, &leaf, kz, simd.splat(ray.origin[kz & 3]));
-        let x = from_origin(simd, &leaf, kx, simd.splat(ray.origin[kx & 3]));
-        let y = from_origin(simd, &leaf, ky, simd.splat(ray.origin[ky & 3]));
+        let z = from_origin(simd, &rows, kz, simd.splat(ray.origin[kz & 3]));
+        let x = from_origin(simd, &rows, kx, simd.splat(ray.origin[kx & 3]));
+        let y = from_origin(simd, &rows, ky, simd.splat(ray.origin[ky & 3]));
         let x = shear(simd, x, simd.splat(ray.per_z[kx & 3]), z);
         let y = shear(simd, y, simd.splat(ray.per_z[ky & 3]), z);
         let a = edge(simd, x[2], y[1], y[2], x[1]);
@@ -214,7 +215,7 @@ impl<'a, F: LeafForm> LeafTest<'a, F> {
 }
 
 #[inline(always)]
-fn from_origin<S: Simd>(simd: S, leaf: &impl LeafTriangles, axis: usize, origin: S::F32x8) -> Corners<S> {
+fn from_origin<S: Simd>(simd: S, leaf: &impl LeafRows, axis: usize, origin: S::F32x8) -> Corners<S> {
     let [a, b, c] = leaf.rows(axis);
     [simd.sub(simd.load(a), origin), simd.sub(simd.load(b), origin), simd.sub(simd.load(c), origin)]
 }

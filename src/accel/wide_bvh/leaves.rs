@@ -48,14 +48,17 @@ pub(crate) trait LeafForm: Copy + Send + Sync {
     fn leaf(words: &[f32], count: usize) -> Self::Leaf<'_>;
 }
 
+/// A leaf's triangles by coordinate.
+pub(crate) trait LeafRows {
+    /// One coordinate of the three vertices of all triangles; what lies beyond the last one has no meaning.
+    fn rows(&self, axis: usize) -> [&[f32; LANES]; 3];
+}
+
 /// A leaf as a kernel reads it.
 pub(crate) trait LeafTriangles: Copy {
-    /// The leaf with its rows in place.
-    fn unpacked<S: Simd>(self, simd: S) -> Self;
+    type Rows: LeafRows;
 
-    /// One coordinate of the three vertices of all triangles; what lies beyond the last one has no meaning. Of a leaf
-    /// that is unpacked.
-    fn rows(&self, axis: usize) -> [&[f32; LANES]; 3];
+    fn unpacked<S: Simd>(self, simd: S) -> Self::Rows;
 
     /// Bit `i` for triangle `i`.
     fn mask(&self) -> u32;
@@ -216,17 +219,20 @@ impl LeafForm for ByAxis {
     }
 }
 
-impl LeafTriangles for Leaf<'_> {
-    /// They are always.
-    #[inline(always)]
-    fn unpacked<S: Simd>(self, _simd: S) -> Self {
-        self
-    }
-
+impl LeafRows for Leaf<'_> {
     #[inline(always)]
     fn rows(&self, axis: usize) -> [&[f32; LANES]; 3] {
         let rows: &[f32; 3 * LANES] = array(self.words, 3 * (axis & 3) * self.count);
         [array(rows, 0), array(rows, self.count), array(rows, 2 * self.count)]
+    }
+}
+
+impl LeafTriangles for Leaf<'_> {
+    type Rows = Self;
+
+    #[inline(always)]
+    fn unpacked<S: Simd>(self, _simd: S) -> Self {
+        self
     }
 
     #[inline(always)]

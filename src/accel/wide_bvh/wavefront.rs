@@ -13,7 +13,7 @@ use std::time::Instant;
 use glam::Vec3A;
 
 use super::WideBvh;
-use super::leaves::{Leaf, LeafTriangles};
+use super::leaves::{Leaf, LeafRows, LeafTriangles};
 use super::node::{Child, WideNode};
 use super::packet::{PACKET, Packet, Spread};
 use super::traverse::Traversal;
