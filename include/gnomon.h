@@ -168,7 +168,7 @@ typedef struct GnomonBuildOptions {
     // Passed on to `progress`.
     void *progress_user;
     // 1: a WIDE_BVH stores each vertex of a leaf once, which takes a third less memory of a mesh and makes queries
-    // slower, singles by 0 to 15 % on AVX2; at most 44 million triangles. The answers are the same. 0, the default: it does
+    // slower, by up to a fifth; at most 44 million triangles. The answers are the same. 0, the default: it does
     // not. No other structure is changed by it.
     uint32_t compact;
 } GnomonBuildOptions;

@@ -90,7 +90,7 @@ pub struct GnomonBuildOptions {
     /// Passed on to `progress`.
     pub progress_user: *mut c_void,
     /// 1: a WIDE_BVH stores each vertex of a leaf once, which takes a third less memory of a mesh and makes queries
-    /// slower, singles by 0 to 15 % on AVX2; at most 44 million triangles. The answers are the same. 0, the default: it does
+    /// slower, by up to a fifth; at most 44 million triangles. The answers are the same. 0, the default: it does
     /// not. No other structure is changed by it.
     pub compact: u32,
 }
