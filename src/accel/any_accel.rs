@@ -5,11 +5,11 @@ use super::bvh::{BinnedSah, Bvh, Median};
 use super::reference::{Reference, TriangleSource, gather};
 use super::stats::Shape;
 use super::{BuildContext, BuildFailure, Compact, Quality, Structure, WideBvh};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Triangle};
 
 pub(crate) enum AnyAccel {
-    BruteForce(BruteForce),
-    Bvh(Bvh),
+    BruteForce(BruteForce<Triangle>),
+    Bvh(Bvh<Triangle>),
     WideBvh(WideBvh),
     CompactWideBvh(WideBvh<Compact>),
 }
@@ -60,9 +60,9 @@ pub(crate) fn build(
 ) -> Result<AnyAccel, BuildFailure> {
     match (structure, quality) {
         (Structure::BruteForce, _) => {
-            let triangles = gather(source, &references, context)?;
+            let primitives = gather(source, &references, context)?;
             context.release(references);
-            BruteForce::build(triangles, context).map(AnyAccel::BruteForce)
+            BruteForce::build(primitives, context).map(AnyAccel::BruteForce)
         }
         (Structure::Bvh, Quality::Low) => {
             Bvh::build(references, bounds, &Median, quality, source, context).map(AnyAccel::Bvh)

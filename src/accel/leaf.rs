@@ -1,7 +1,8 @@
-//! What queries look for, the order in which hits win, and a leaf tested triangle by triangle.
+//! What queries look for, the order in which hits win, and a leaf tested primitive by primitive.
 
+use super::primitive::Primitive;
 use super::tally::{RayCounts, Tally};
-use crate::geometry::{INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
+use crate::geometry::{INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit};
 
 /// What a query wants, chosen at compile time.
 pub(crate) trait Query {
@@ -37,54 +38,48 @@ impl Query for Counted {
 
 /// The best hit so far.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ClosestHit {
+pub(crate) struct ClosestHit<T = Triangle> {
     pub(crate) t: f32,
     pub(crate) u: f32,
     pub(crate) v: f32,
-    pub(crate) triangle: Triangle,
+    pub(crate) primitive: T,
 }
 
-impl ClosestHit {
+impl<T: Primitive> ClosestHit<T> {
     /// For a query that asks for no more than whether there is a hit.
-    pub(crate) const UNSPECIFIED: Self = Self {
-        t: f32::NAN,
-        u: f32::NAN,
-        v: f32::NAN,
-        triangle: Triangle { axes: [[f32::NAN; 3]; 3], geometry_id: INVALID_ID, primitive_id: INVALID_ID },
-    };
+    pub(crate) const UNSPECIFIED: Self = Self { t: f32::NAN, u: f32::NAN, v: f32::NAN, primitive: T::NONE };
 
     /// Nothing yet: whatever lies in the interval is better, a hit at `t_max` itself too.
     pub(crate) fn none(ray: &Ray) -> Self {
-        Self { t: ray.t_max, u: 0.0, v: 0.0, triangle: Triangle::new([[0.0; 3]; 3], INVALID_ID, INVALID_ID) }
+        Self { t: ray.t_max, u: 0.0, v: 0.0, primitive: T::NONE }
     }
 
     pub(crate) fn found(self) -> Option<Self> {
-        (self.triangle.geometry_id != INVALID_ID).then_some(self)
+        (self.primitive.ids().0 != INVALID_ID).then_some(self)
     }
 
     /// Keeps the hit if it is better, and says so.
     #[inline(always)]
-    pub(crate) fn improve(&mut self, hit: &TriangleHit, triangle: &Triangle) -> bool {
-        let ids = |triangle: &Triangle| (triangle.geometry_id, triangle.primitive_id);
-        let is_better = hit.t < self.t || (hit.t == self.t && ids(triangle) < ids(&self.triangle));
+    pub(crate) fn improve(&mut self, hit: &TriangleHit, primitive: &T) -> bool {
+        let is_better = hit.t < self.t || (hit.t == self.t && primitive.ids() < self.primitive.ids());
         if is_better {
-            *self = Self { t: hit.t, u: hit.u, v: hit.v, triangle: *triangle };
+            *self = Self { t: hit.t, u: hit.u, v: hit.v, primitive: *primitive };
         }
         is_better
     }
 }
 
-/// Tests the triangles and keeps the best hit. True ends the query.
+/// Tests the primitives and keeps the best hit. True ends the query.
 #[inline(always)]
-pub(crate) fn test_triangles<Q: Query, P: PrecisionMode>(
-    triangles: &[Triangle],
-    ray: &TriangleRay,
+pub(crate) fn test_each<'p, Q: Query, P: PrecisionMode, T: Primitive>(
+    primitives: impl IntoIterator<Item = &'p T>,
+    ray: &T::Ray,
     t_min: f32,
-    best: &mut ClosestHit,
+    best: &mut ClosestHit<T>,
 ) -> bool {
-    for triangle in triangles {
-        if let Some(hit) = ray.hit::<P>(triangle, Interval { t_min, t_max: best.t })
-            && best.improve(&hit, triangle)
+    for primitive in primitives {
+        if let Some(hit) = primitive.hit::<P>(ray, Interval { t_min, t_max: best.t })
+            && best.improve(&hit, primitive)
             && Q::FIRST_HIT_ENDS
         {
             return true;

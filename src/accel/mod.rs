@@ -5,24 +5,61 @@ mod brute_force;
 mod build_context;
 mod bvh;
 mod leaf;
+mod primitive;
 mod reference;
 mod stats;
 mod tally;
+mod walk_ray;
 mod wide_bvh;
 
 pub(crate) use any_accel::{AnyAccel, build, choose, unsupported};
 pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
 pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Counted, Query};
-pub(crate) use reference::{Bounds8, Reference, TriangleSource};
+pub(crate) use primitive::{Primitive, Surface};
+pub(crate) use reference::{Bounds8, PrimitiveSource, Reference};
 pub use stats::{Precision, Quality, Stats, Structure};
 pub use tally::RayCounts;
 pub(crate) use wide_bvh::{Compact, Vectorize, WideBvh};
 
-use crate::geometry::{PrecisionMode, Ray};
+use crate::geometry::{PrecisionMode, Ray, Triangle};
+
+/// A structure whose rays go one by one through scalar code.
+pub(crate) trait Walk {
+    type Primitive: Primitive;
+
+    /// So that an empty scene answers before the ray is looked at.
+    #[inline(always)]
+    fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// The closest hit of a valid ray, or any. Must be `#[inline(always)]`.
+    fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<Self::Primitive>>;
+}
+
+impl<W: Walk<Primitive = Triangle>> Accel for W {
+    type Found = Triangle;
+
+    #[inline(always)]
+    fn query<Q: Query, P: PrecisionMode, R>(
+        &self,
+        ray: impl Into<Ray>,
+        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
+    ) -> R {
+        let mut tally = Q::Tally::default();
+        if self.is_empty() {
+            return then(None, tally);
+        }
+        then(Ray::valid(ray).and_then(|ray| self.walk::<Q, P>(&ray, &mut tally)), tally)
+    }
+}
 
 /// What a structure can be asked. The precision and the kind of query are compile-time choices, so that a kernel
 /// holds no branch on either.
 pub(crate) trait Accel {
+    /// What its hits tell about what they hit.
+    type Found: Surface;
+
     /// The closest hit of a ray, or any, handed to `then` with what finding it took; none for a ray that is not valid.
     ///
     /// The ray is made, and its hit used, inside the kernel: what went through memory on the way would be loaded
@@ -30,14 +67,14 @@ pub(crate) trait Accel {
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
         ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
+        then: impl FnOnce(Option<ClosestHit<Self::Found>>, Q::Tally) -> R,
     ) -> R;
 
     /// As [`Accel::query`] for the rays of each run, with the same answers in the same places.
     fn query_runs<'r, Q, P, R, T>(
         &self,
         mut next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
-        answer: impl Fn(&mut T, Option<ClosestHit>),
+        answer: impl Fn(&mut T, Option<ClosestHit<Self::Found>>),
     ) where
         Q: Query,
         P: PrecisionMode,

@@ -1,19 +1,26 @@
-//! What a builder sorts in place of triangles: their boxes, with the ids to find them again.
+//! What a builder sorts in place of primitives: their boxes, with the ids to find them again.
 
 use glam::Vec4;
 use rayon::prelude::*;
 
-use super::{BuildContext, BuildFailure};
+use super::{BuildContext, BuildFailure, Primitive};
 use crate::geometry::{Aabb, Triangle};
 use crate::simd::Simd;
 
-/// Where the triangles are that references speak of.
-pub(crate) trait TriangleSource: Sync {
-    fn triangle(&self, geometry_id: u32, primitive_id: u32) -> Triangle;
+/// Where the primitives are that references speak of.
+pub(crate) trait PrimitiveSource: Sync {
+    type Primitive: Primitive;
 
-    /// For each geometry the number of triangles in those before it; then that of all.
+    fn primitive(&self, geometry_id: u32, primitive_id: u32) -> Self::Primitive;
+
+    /// For each geometry the number of primitives in those before it; then that of all.
     fn starts(&self) -> &[u32];
 }
+
+/// Has triangles.
+pub(crate) trait TriangleSource: PrimitiveSource<Primitive = Triangle> {}
+
+impl<S: PrimitiveSource<Primitive = Triangle>> TriangleSource for S {}
 
 /// A box as eight lanes: the lower corner, a lane to spare, the negated upper corner, a lane to spare. One minimum
 /// makes the union of two. 32 bytes.
@@ -68,7 +75,7 @@ impl Bounds8 {
     }
 }
 
-/// A triangle's box, with the triangle's ids in the spare lanes.
+/// A primitive's box, with its ids in the spare lanes.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(crate) struct Reference {
@@ -104,23 +111,23 @@ impl Reference {
     }
 
     #[inline(always)]
-    pub(super) fn triangle(&self, source: &impl TriangleSource) -> Triangle {
-        source.triangle(self.geometry_id(), self.primitive_id())
+    pub(super) fn primitive<S: PrimitiveSource>(&self, source: &S) -> S::Primitive {
+        source.primitive(self.geometry_id(), self.primitive_id())
     }
 }
 
-/// The triangles themselves, in the order of their references.
-pub(super) fn gather(
-    source: &impl TriangleSource,
+/// The primitives themselves, in the order of their references.
+pub(super) fn gather<S: PrimitiveSource>(
+    source: &S,
     references: &[Reference],
     context: &BuildContext,
-) -> Result<Vec<Triangle>, BuildFailure> {
-    let mut triangles = context.reserve(references.len())?;
-    let triangle = |reference: &Reference| reference.triangle(source);
+) -> Result<Vec<S::Primitive>, BuildFailure> {
+    let mut primitives = context.reserve(references.len())?;
+    let primitive = |reference: &Reference| reference.primitive(source);
     if context.is_parallel() {
-        triangles.par_extend(references.par_iter().map(triangle));
+        primitives.par_extend(references.par_iter().map(primitive));
     } else {
-        triangles.extend(references.iter().map(triangle));
+        primitives.extend(references.iter().map(primitive));
     }
-    Ok(triangles)
+    Ok(primitives)
 }

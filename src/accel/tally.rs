@@ -15,6 +15,7 @@ pub struct RayCounts {
 /// Told what a query does, as it does it.
 pub(crate) trait Tally: Copy + Default {
     fn visit_node(&mut self);
+    fn step_cell(&mut self);
     fn test_primitives(&mut self, count: usize);
 }
 
@@ -24,6 +25,9 @@ impl Tally for () {
     fn visit_node(&mut self) {}
 
     #[inline(always)]
+    fn step_cell(&mut self) {}
+
+    #[inline(always)]
     fn test_primitives(&mut self, _count: usize) {}
 }
 
@@ -31,6 +35,11 @@ impl Tally for RayCounts {
     #[inline(always)]
     fn visit_node(&mut self) {
         self.nodes_visited = self.nodes_visited.saturating_add(1);
+    }
+
+    #[inline(always)]
+    fn step_cell(&mut self) {
+        self.cells_stepped = self.cells_stepped.saturating_add(1);
     }
 
     #[inline(always)]

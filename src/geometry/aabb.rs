@@ -39,6 +39,13 @@ impl Aabb {
     }
 }
 
+/// How far along each axis a ray may pass the point of a triangle that it is said to hit, with room for the roundings of
+/// a box test: the slack of [`SlabRay`], which has the derivation.
+#[inline(always)]
+pub(crate) fn band_distance(origin: Vec3, scene_bounds: &Aabb) -> f32 {
+    gamma(24) * scene_bounds.reach_from(origin) + f32::MIN_POSITIVE
+}
+
 /// A ray made ready for box tests inside one scene.
 ///
 /// The test must visit every box whose triangle may answer: a triangle test in `f32` takes triangles that the exact
@@ -79,7 +86,7 @@ impl SlabRay {
         } else {
             scale_by_power_of_two_near(magnitude)
         };
-        let slack_distance = gamma(24) * scene_bounds.reach_from(ray.origin) + f32::MIN_POSITIVE;
+        let slack_distance = band_distance(ray.origin, scene_bounds);
         let axis = |d: f32| {
             let inverse = 1.0 / (d * scale);
             match (d == 0.0, inverse.is_infinite()) {

@@ -9,7 +9,7 @@ mod triangle;
 mod triangle_hit;
 
 pub use aabb::Aabb;
-pub(crate) use aabb::{ObliqueSlabs, SlabRay};
+pub(crate) use aabb::{ObliqueSlabs, SlabRay, band_distance};
 pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};
 pub use mesh_view::{IndexBytes, IndexView, PositionView, TriangleView, span_bytes};
 pub use ray::{Hit, INVALID_ID, Ray};

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::builder::Geometry;
 use super::{BuildError, InvalidTriangles};
-use crate::accel::{Bounds8, BuildContext, Reference, TriangleSource};
+use crate::accel::{Bounds8, BuildContext, PrimitiveSource, Reference};
 use crate::geometry::{Aabb, INVALID_ID, Triangle};
 use crate::simd::{Simd, SimdKernel};
 
@@ -48,9 +48,11 @@ impl<'a> Meshes<'a> {
     }
 }
 
-impl TriangleSource for Meshes<'_> {
+impl PrimitiveSource for Meshes<'_> {
+    type Primitive = Triangle;
+
     #[inline(always)]
-    fn triangle(&self, geometry_id: u32, primitive_id: u32) -> Triangle {
+    fn primitive(&self, geometry_id: u32, primitive_id: u32) -> Triangle {
         let geometry = &self.geometries[geometry_id as usize];
         let vertices = geometry.vertices(geometry.triangles[primitive_id as usize]);
         Triangle::new(vertices, geometry_id, primitive_id)

@@ -1,7 +1,7 @@
 //! Queries: the one place where a scene's structure and precision are looked at, once a call.
 
 use super::Scene;
-use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Counted, Precision, RayCounts, Vectorize};
+use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Counted, Precision, RayCounts, Surface, Vectorize};
 use crate::geometry::{Accurate, Fast, Hit, INVALID_ID, PrecisionMode, Ray};
 use crate::simd::DetectedIsa;
 
@@ -178,14 +178,15 @@ impl Question for Occlusion {
 }
 
 #[inline(always)]
-fn complete(found: ClosestHit) -> Hit {
+fn complete(found: ClosestHit<impl Surface>) -> Hit {
+    let (geometry_id, primitive_id) = found.primitive.ids();
     Hit {
         t: found.t,
         u: found.u,
         v: found.v,
-        normal: found.triangle.normal(),
-        primitive_id: found.triangle.primitive_id,
-        geometry_id: found.triangle.geometry_id,
+        normal: found.primitive.normal(),
+        primitive_id,
+        geometry_id,
         instance_id: INVALID_ID,
     }
 }

@@ -3,8 +3,8 @@
 use arrayvec::ArrayVec;
 
 use super::node::{MOST_LEVELS, Node};
-use crate::accel::reference::{Bounds8, Reference, TriangleSource};
-use crate::accel::{BuildContext, BuildFailure};
+use crate::accel::reference::{Bounds8, PrimitiveSource, Reference};
+use crate::accel::{BuildContext, BuildFailure, Primitive};
 use crate::simd::{Scalar, Simd, SimdKernel};
 
 /// A binary tree in two parts: what lies below a few thousand references is a subtree of its own, built by one thread.
@@ -86,7 +86,7 @@ const LAST_FREE_LEVEL: usize = MOST_LEVELS - 33;
 pub(super) const MOST_IN_SUBTREE: usize = 4096;
 
 /// The references are reordered; the tree's subtrees have them.
-pub(in crate::accel) fn build<'r, R: SplitRule, T: TriangleSource>(
+pub(in crate::accel) fn build<'r, R: SplitRule, T: PrimitiveSource>(
     references: &'r mut [Reference],
     rule: &R,
     source: &T,
@@ -142,7 +142,7 @@ struct Builder<'a, R, T> {
     context: &'a BuildContext<'a>,
 }
 
-impl<R: SplitRule, T: TriangleSource> Builder<'_, R, T> {
+impl<R: SplitRule, T: PrimitiveSource> Builder<'_, R, T> {
     fn build<'r>(&self, part: Part<'r>) -> Result<Branch<'r>, BuildFailure> {
         self.context.check()?;
         if part.references.len() <= MOST_IN_SUBTREE {
@@ -200,7 +200,7 @@ struct Waiting {
     parent: usize,
 }
 
-impl<'r, R: SplitRule, T: TriangleSource> SimdKernel for GrowSubtree<'_, 'r, R, T> {
+impl<'r, R: SplitRule, T: PrimitiveSource> SimdKernel for GrowSubtree<'_, 'r, R, T> {
     type Output = (Subtree<'r>, u32);
 
     #[inline(always)]
@@ -250,14 +250,14 @@ impl<'r, R: SplitRule, T: TriangleSource> SimdKernel for GrowSubtree<'_, 'r, R, 
     }
 }
 
-/// Keeps, of triangles that are the same to the bit, the one whose hits win. Returns how many are left, at the front.
+/// Keeps, of primitives that are the same to the bit, the one whose hits win. Returns how many are left, at the front.
 #[cold]
-fn drop_duplicates(references: &mut [Reference], source: &impl TriangleSource) -> usize {
-    let vertices = |reference: &Reference| reference.triangle(source).axes.map(|row| row.map(f32::to_bits));
-    references.sort_by_cached_key(|reference| (vertices(reference), reference.ids()));
+fn drop_duplicates(references: &mut [Reference], source: &impl PrimitiveSource) -> usize {
+    let shape = |reference: &Reference| reference.primitive(source).shape();
+    references.sort_by_cached_key(|reference| (shape(reference), reference.ids()));
     let mut count = 1;
     for next in 1..references.len() {
-        if vertices(&references[next]) != vertices(&references[count - 1]) {
+        if shape(&references[next]) != shape(&references[count - 1]) {
             references[count] = references[next];
             count += 1;
         }

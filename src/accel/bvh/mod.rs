@@ -1,4 +1,4 @@
-//! Binary bounding volume hierarchy: a box in every node, two children or a run of triangles below it.
+//! Binary bounding volume hierarchy: a box in every node, two children or a run of primitives below it.
 //!
 //! Shines on everything that is unevenly spread; each triangle is stored once. Fails where boxes overlap much: long
 //! diagonal triangles, many triangles in one place.
@@ -19,30 +19,30 @@ pub(crate) use split_sah::BinnedSah;
 use build::SplitRule;
 use node::{Node, NodePair};
 
-use super::reference::{Reference, TriangleSource};
+use super::reference::{PrimitiveSource, Reference};
 use super::stats::Shape;
-use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
-use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
+use super::{BuildContext, BuildFailure, Primitive, Quality};
+use crate::geometry::Aabb;
 
-pub(crate) struct Bvh {
+pub(crate) struct Bvh<T> {
     pub(super) bounds: Aabb,
     pub(super) root: Node,
     /// A node's children come after it.
     pub(super) pairs: Vec<NodePair>,
     /// In the order of the leaves.
-    pub(super) triangles: Vec<Triangle>,
+    pub(super) primitives: Vec<T>,
     depth: u32,
     sah_cost: f64,
 }
 
-impl Bvh {
+impl<T: Primitive> Bvh<T> {
     /// At least one reference; `bounds` contains them all.
     pub(crate) fn build<R: SplitRule>(
         mut references: Vec<Reference>,
         bounds: Aabb,
         rule: &R,
         quality: Quality,
-        source: &impl TriangleSource,
+        source: &impl PrimitiveSource<Primitive = T>,
         context: &BuildContext,
     ) -> Result<Self, BuildFailure> {
         let count = references.len();
@@ -64,25 +64,13 @@ impl Bvh {
     pub(crate) fn shape(&self) -> Shape {
         let leaf_count = self.pairs.len() + 1;
         Shape {
-            reference_count: self.triangles.len(),
+            reference_count: self.primitives.len(),
             node_count: self.pairs.len() + leaf_count,
             leaf_count,
             depth: self.depth,
             node_bytes: size_of_val(self.pairs.as_slice()),
-            leaf_bytes: size_of_val(self.triangles.as_slice()),
+            leaf_bytes: size_of_val(self.primitives.as_slice()),
             sah_cost: self.sah_cost,
         }
-    }
-}
-
-impl Accel for Bvh {
-    #[inline(always)]
-    fn query<Q: Query, P: PrecisionMode, R>(
-        &self,
-        ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
-    ) -> R {
-        let mut tally = Q::Tally::default();
-        then(Ray::valid(ray).and_then(|ray| self.traverse::<Q, P>(&ray, &mut tally)), tally)
     }
 }

@@ -5,48 +5,47 @@ use super::build::BinaryTree;
 use super::node::{Node, NodePair};
 use super::split_sah::{NODE_COST, TRIANGLE_COST};
 use crate::accel::build_context::slices;
-use crate::accel::reference::TriangleSource;
-use crate::accel::{BuildContext, BuildFailure};
-use crate::geometry::{Aabb, Triangle};
+use crate::accel::reference::PrimitiveSource;
+use crate::accel::{BuildContext, BuildFailure, Primitive};
+use crate::geometry::Aabb;
 
-pub(super) fn pack(
+pub(super) fn pack<S: PrimitiveSource>(
     tree: BinaryTree,
     bounds: Aabb,
-    source: &impl TriangleSource,
+    source: &S,
     context: &BuildContext,
-) -> Result<Bvh, BuildFailure> {
+) -> Result<Bvh<S::Primitive>, BuildFailure> {
     let BinaryTree { top, subtrees, depth } = tree;
     let top_pairs = pair_count(&top);
     let pair_counts: Vec<usize> = subtrees.iter().map(|subtree| pair_count(&subtree.nodes)).collect();
-    let triangle_counts: Vec<usize> = subtrees.iter().map(|subtree| subtree.references.len()).collect();
+    let primitive_counts: Vec<usize> = subtrees.iter().map(|subtree| subtree.references.len()).collect();
     let mut pairs = context.filled(top_pairs + pair_counts.iter().sum::<usize>(), NodePair::EMPTY)?;
-    let unset = Triangle::new([[0.0; 3]; 3], 0, 0);
-    let mut triangles = context.filled(triangle_counts.iter().sum(), unset)?;
+    let mut primitives = context.filled(primitive_counts.iter().sum(), S::Primitive::NONE)?;
 
     let (above, below) = pairs.split_at_mut(top_pairs);
-    let (mut first_pair, mut first_triangle) = (top_pairs as u32, 0);
+    let (mut first_pair, mut first_primitive) = (top_pairs as u32, 0);
     let mut roots = Vec::with_capacity(subtrees.len());
     let mut tasks = Vec::with_capacity(subtrees.len());
-    for ((subtree, pairs), triangles) in
-        subtrees.into_iter().zip(slices(below, &pair_counts)).zip(slices(&mut triangles, &triangle_counts))
+    for ((subtree, pairs), primitives) in
+        subtrees.into_iter().zip(slices(below, &pair_counts)).zip(slices(&mut primitives, &primitive_counts))
     {
         let root = subtree.nodes[0];
         roots.push(if root.is_leaf() {
-            Node { first: root.first + first_triangle, ..root }
+            Node { first: root.first + first_primitive, ..root }
         } else {
             Node { first: first_pair, ..root }
         });
-        let (pair_base, triangle_base) = (first_pair, first_triangle);
+        let (pair_base, primitive_base) = (first_pair, first_primitive);
         first_pair += pairs.len() as u32;
-        first_triangle += triangles.len() as u32;
-        tasks.push((subtree, pairs, pair_base, triangles, triangle_base));
+        first_primitive += primitives.len() as u32;
+        tasks.push((subtree, pairs, pair_base, primitives, primitive_base));
     }
     let root = if top[0].is_leaf() { roots[0] } else { Node { first: 0, ..top[0] } };
     pack_nodes(&top, above, 0, |leaf| roots[leaf.first as usize]);
-    let costs = context.map_each(tasks, |(subtree, pairs, pair_base, triangles, triangle_base)| {
-        pack_nodes(&subtree.nodes, pairs, pair_base, |leaf| Node { first: leaf.first + triangle_base, ..*leaf });
-        for (triangle, reference) in triangles.iter_mut().zip(subtree.references) {
-            *triangle = reference.triangle(source);
+    let costs = context.map_each(tasks, |(subtree, pairs, pair_base, primitives, primitive_base)| {
+        pack_nodes(&subtree.nodes, pairs, pair_base, |leaf| Node { first: leaf.first + primitive_base, ..*leaf });
+        for (primitive, reference) in primitives.iter_mut().zip(subtree.references) {
+            *primitive = reference.primitive(source);
         }
         let cost = subtree.nodes.iter().map(cost_of).sum::<f64>();
         context.release(subtree.nodes);
@@ -55,7 +54,7 @@ pub(super) fn pack(
     // The top's leaves are the subtrees' roots.
     let above = top.iter().filter(|node| !node.is_leaf()).map(cost_of).sum::<f64>();
     let cost = above + costs.iter().sum::<f64>();
-    Ok(Bvh { bounds, root, pairs, triangles, depth, sah_cost: cost / root.half_area() })
+    Ok(Bvh { bounds, root, pairs, primitives, depth, sah_cost: cost / root.half_area() })
 }
 
 fn pair_count(nodes: &[Node]) -> usize {

@@ -4,9 +4,10 @@ use arrayvec::ArrayVec;
 
 use super::Bvh;
 use super::node::{MOST_LEVELS, Node};
-use crate::accel::leaf::{ClosestHit, Query, test_triangles};
+use crate::accel::leaf::{ClosestHit, Query, test_each};
 use crate::accel::tally::Tally;
-use crate::geometry::{PrecisionMode, Ray, SlabRay, Triangle, TriangleRay};
+use crate::accel::{Primitive, Walk};
+use crate::geometry::{PrecisionMode, Ray, SlabRay};
 
 /// A node that waits, and where the ray enters it.
 #[derive(Clone, Copy)]
@@ -22,11 +23,13 @@ impl Pending {
     }
 }
 
-impl Bvh {
+impl<T: Primitive> Walk for Bvh<T> {
+    type Primitive = T;
+
     #[inline(always)]
-    pub(super) fn traverse<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit> {
+    fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
         let slabs = SlabRay::new(ray, &self.bounds);
-        let triangle_ray = TriangleRay::new(ray);
+        let primitive_ray = T::make_ready(ray);
         let t_min = ray.t_min * slabs.time_scale;
         let mut t_max = ray.t_max * slabs.time_scale;
         let mut best = ClosestHit::none(ray);
@@ -35,9 +38,9 @@ impl Bvh {
         let mut node = Pending::new(&self.root, slabs.enter(&self.root.planes, t_min, t_max)?);
         loop {
             if node.count != 0 {
-                let triangles = &self.triangles[node.first as usize..][..node.count as usize];
-                tally.test_primitives(triangles.len());
-                if test_leaf::<Q, P>(triangles, &triangle_ray, ray.t_min, &mut best) {
+                let primitives = &self.primitives[node.first as usize..][..node.count as usize];
+                tally.test_primitives(primitives.len());
+                if test_leaf::<Q, P, T>(primitives, &primitive_ray, ray.t_min, &mut best) {
                     break;
                 }
                 t_max = best.t * slabs.time_scale;
@@ -79,11 +82,11 @@ impl Bvh {
 
 /// Out of line: inlined it takes registers from the box test, and a ray takes 12 % more instructions.
 #[inline(never)]
-fn test_leaf<Q: Query, P: PrecisionMode>(
-    triangles: &[Triangle],
-    ray: &TriangleRay,
+fn test_leaf<Q: Query, P: PrecisionMode, T: Primitive>(
+    primitives: &[T],
+    ray: &T::Ray,
     t_min: f32,
-    best: &mut ClosestHit,
+    best: &mut ClosestHit<T>,
 ) -> bool {
-    test_triangles::<Q, P>(triangles, ray, t_min, best)
+    test_each::<Q, P, T>(primitives, ray, t_min, best)
 }

@@ -2,12 +2,13 @@
 
 use super::Bvh;
 use super::node::{MOST_LEVELS, Node};
+use crate::accel::Primitive;
 use crate::geometry::Aabb;
 
-impl Bvh {
-    /// Every box contains what is below it, every triangle is in one leaf, and the stack suffices.
+impl<T: Primitive> Bvh<T> {
+    /// Every box contains what is below it, every primitive is in one leaf, and the stack suffices.
     pub(crate) fn validate(&self) -> Result<(), String> {
-        let mut triangle_seen = vec![false; self.triangles.len()];
+        let mut is_seen = vec![false; self.primitives.len()];
         let mut deepest = 0;
         let mut pending = vec![(self.root, self.bounds, 1)];
         while let Some((node, parent, level)) = pending.pop() {
@@ -22,17 +23,17 @@ impl Bvh {
                 continue;
             }
             for index in node.first..node.first + node.count {
-                let triangle = self.triangles.get(index as usize).ok_or_else(|| format!("no triangle {index}"))?;
-                if !bounds.contains(&triangle.bounds()) {
-                    return Err(format!("triangle {index} is not inside its leaf's box {bounds:?}"));
+                let primitive = self.primitives.get(index as usize).ok_or_else(|| format!("no primitive {index}"))?;
+                if !bounds.contains(&primitive.bounds()) {
+                    return Err(format!("primitive {index} is not inside its leaf's box {bounds:?}"));
                 }
-                if std::mem::replace(&mut triangle_seen[index as usize], true) {
-                    return Err(format!("triangle {index} is in two leaves"));
+                if std::mem::replace(&mut is_seen[index as usize], true) {
+                    return Err(format!("primitive {index} is in two leaves"));
                 }
             }
         }
-        if let Some(index) = triangle_seen.iter().position(|seen| !seen) {
-            return Err(format!("triangle {index} is in no leaf"));
+        if let Some(index) = is_seen.iter().position(|seen| !seen) {
+            return Err(format!("primitive {index} is in no leaf"));
         }
         if deepest != self.depth || deepest as usize > MOST_LEVELS {
             return Err(format!("{deepest} levels, {} stated, at most {MOST_LEVELS} allowed", self.depth));

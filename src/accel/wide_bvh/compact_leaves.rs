@@ -62,7 +62,7 @@ impl Welded {
     fn new(references: &[Reference], source: &impl TriangleSource) -> Self {
         let mut welded = Self { vertices: ArrayVec::new(), triangles: ArrayVec::new() };
         for reference in references {
-            let [x, y, z] = reference.triangle(source).axes;
+            let [x, y, z] = reference.primitive(source).axes;
             let index = [0, 1, 2].map(|corner| welded.index([x[corner], y[corner], z[corner]]));
             welded.triangles.push(index);
         }
@@ -251,15 +251,17 @@ fn start(bits: u64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accel::Watch;
     use crate::accel::wide_bvh::leaves::Leaves;
+    use crate::accel::{PrimitiveSource, Watch};
     use crate::geometry::Triangle;
     use crate::simd::{Isa, Scalar};
 
     struct Triangles(Vec<Triangle>);
 
-    impl TriangleSource for Triangles {
-        fn triangle(&self, _geometry_id: u32, primitive_id: u32) -> Triangle {
+    impl PrimitiveSource for Triangles {
+        type Primitive = Triangle;
+
+        fn primitive(&self, _geometry_id: u32, primitive_id: u32) -> Triangle {
             self.0[primitive_id as usize]
         }
 
@@ -298,7 +300,7 @@ mod tests {
             let unpacked = leaf.unpacked(Scalar);
             assert_eq!(leaf.mask(), (1 << run.len()) - 1);
             for (lane, reference) in run.iter().enumerate() {
-                let expected = reference.triangle(&source);
+                let expected = reference.primitive(&source);
                 assert_eq!(leaf.id(lane), reference.primitive_id());
                 for axis in 0..3 {
                     let bits = expected.axes[axis].map(f32::to_bits);

@@ -210,7 +210,7 @@ impl<'a, F: LeafForm> LeafTest<'a, F> {
             return None;
         }
         let [t, u, v, _] = best.hit.to_array();
-        Some(self.bvh.leaves.resolve(ClosestHit { t, u, v, triangle: self.triangle(best.place) }))
+        Some(self.bvh.leaves.resolve(ClosestHit { t, u, v, primitive: self.triangle(best.place) }))
     }
 }
 

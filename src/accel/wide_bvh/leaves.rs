@@ -142,7 +142,7 @@ impl<F: LeafForm> Leaves<F> {
     /// The hit with its triangle's own ids.
     #[inline(always)]
     pub(super) fn resolve(&self, mut hit: ClosestHit) -> ClosestHit {
-        (hit.triangle.geometry_id, hit.triangle.primitive_id) = self.ids.separate(hit.triangle.primitive_id);
+        (hit.primitive.geometry_id, hit.primitive.primitive_id) = self.ids.separate(hit.primitive.primitive_id);
         hit
     }
 }
@@ -204,7 +204,7 @@ impl LeafForm for ByAxis {
         let count = references.len();
         let words = &mut words[place * WORDS..][..count * WORDS];
         for (lane, reference) in references.iter().enumerate() {
-            let triangle = reference.triangle(source);
+            let triangle = reference.primitive(source);
             for (row, coordinate) in triangle.axes.as_flattened().iter().enumerate() {
                 words[row * count + lane] = *coordinate;
             }

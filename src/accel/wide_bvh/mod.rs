@@ -28,7 +28,7 @@ use super::bvh::{BinnedSah, build, reinsert};
 use super::reference::{Reference, TriangleSource};
 use super::stats::Shape;
 use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
-use crate::geometry::{Aabb, PrecisionMode, Ray};
+use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
 use crate::simd::{Simd, prefetch_lines};
 
 /// The form of its leaves makes no difference to what it answers.
@@ -137,6 +137,8 @@ impl Vectorize for WideBvh<Compact> {
 
 /// Batches go ray by ray.
 impl<S: Simd> Accel for Vectorized<'_, S, Compact> {
+    type Found = Triangle;
+
     #[inline(always)]
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
@@ -148,6 +150,8 @@ impl<S: Simd> Accel for Vectorized<'_, S, Compact> {
 }
 
 impl<S: Simd> Accel for Vectorized<'_, S> {
+    type Found = Triangle;
+
     #[inline(always)]
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,

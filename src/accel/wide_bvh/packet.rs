@@ -435,7 +435,7 @@ impl Rays {
             if let Some((lane, child)) = self.pending[index] {
                 let triangle = bvh.leaves.leaf(child.triangles()).triangle(lane as usize % LANES);
                 lanes.set(of_group, &TriangleRay::new(&(&sources[index]).into()), &triangle);
-                best[index].triangle = triangle;
+                best[index].primitive = triangle;
             }
         }
         let hits = lanes.evaluate();
@@ -460,7 +460,7 @@ impl Rays {
         let triangle = bvh.leaves.leaf(child.triangles()).triangle(lane as usize % LANES);
         let interval = Interval { t_min: self.t_min[index], t_max: f32::INFINITY };
         if let Some(hit) = TriangleRay::new(&source.into()).hit::<P>(&triangle, interval) {
-            *best = ClosestHit { t: hit.t, u: hit.u, v: hit.v, triangle };
+            *best = ClosestHit { t: hit.t, u: hit.u, v: hit.v, primitive: triangle };
         }
     }
 }

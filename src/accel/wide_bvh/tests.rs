@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::leaves::{ByAxis, LeafForm, LeafTriangles};
 use super::node::Child;
 use super::{Compact, WideBvh, check_count};
-use crate::accel::{BuildContext, BuildFailure, Quality, Reference, TriangleSource, Watch};
+use crate::accel::{BuildContext, BuildFailure, PrimitiveSource, Quality, Reference, Watch};
 use crate::geometry::{Aabb, Triangle};
 use crate::simd::Isa;
 
@@ -15,8 +15,10 @@ struct Soup {
     starts: [u32; 2],
 }
 
-impl TriangleSource for Soup {
-    fn triangle(&self, _geometry_id: u32, primitive_id: u32) -> Triangle {
+impl PrimitiveSource for Soup {
+    type Primitive = Triangle;
+
+    fn primitive(&self, _geometry_id: u32, primitive_id: u32) -> Triangle {
         self.triangles[primitive_id as usize]
     }
 

@@ -648,7 +648,7 @@ where
             if let Some((of_leaf, child)) = self.leaves[id].pending {
                 let triangle = self.bvh.leaves.leaf(child.triangles()).triangle(of_leaf as usize % LANES);
                 lanes.set(lane, &self.slots[id].ray, &triangle);
-                self.slots[id].best.triangle = triangle;
+                self.slots[id].best.primitive = triangle;
             }
         }
         let hits = lanes.evaluate();
@@ -685,7 +685,7 @@ fn settle<P: PrecisionMode>(bvh: &WideBvh, ray: &mut LeafRay, slot: &mut Slot<'_
     let triangle = bvh.leaves.leaf(child.triangles()).triangle(lane as usize % LANES);
     let interval = Interval { t_min: ray.t_min, t_max: f32::INFINITY };
     if let Some(hit) = slot.ray.hit::<P>(&triangle, interval) {
-        slot.best = ClosestHit { t: hit.t, u: hit.u, v: hit.v, triangle };
+        slot.best = ClosestHit { t: hit.t, u: hit.u, v: hit.v, primitive: triangle };
     }
 }
 
