@@ -57,6 +57,12 @@ fn union<S: Simd>(simd: S, references: &[Reference]) -> Bounds8 {
     bounds
 }
 
+/// The box of them all, on all threads.
+pub(super) fn union_together(references: &[Reference], context: &BuildContext) -> Bounds8 {
+    let union = |chunk: &[Reference]| context.vectorize(Union(chunk));
+    context.reduce_chunks(references, union, |a, b| a.union(Scalar, &b)).unwrap_or(Bounds8::EMPTY)
+}
+
 /// Decides about a node: reorders its references and says where the second child's begin, or `None` for a leaf or where it
 /// cannot tell the references apart.
 pub(crate) trait SplitRule: Sync {
@@ -92,9 +98,7 @@ pub(in crate::accel) fn build<'r, R: SplitRule, T: PrimitiveSource>(
     source: &T,
     context: &BuildContext,
 ) -> Result<BinaryTree<'r>, BuildFailure> {
-    let union = |chunk: &[Reference]| context.vectorize(Union(chunk));
-    let bounds = context.reduce_chunks(references, union, |a, b| a.union(Scalar, &b));
-    let bounds = bounds.unwrap_or(Bounds8::EMPTY);
+    let bounds = union_together(references, context);
     let part = Part { references, bounds, level: 0, is_distinct: false };
     let branch = Builder { rule, source, context }.build(part)?;
     let mut tree = BinaryTree { top: Vec::new(), subtrees: Vec::new(), depth: 0 };

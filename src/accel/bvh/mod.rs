@@ -8,12 +8,14 @@ pub(super) mod node;
 mod pack;
 pub(super) mod reinsert;
 mod split_median;
+mod split_morton;
 mod split_sah;
 mod traverse;
 #[cfg(any(test, debug_assertions))]
 mod validate;
 
 pub(crate) use split_median::Median;
+pub(crate) use split_morton::Morton;
 pub(crate) use split_sah::BinnedSah;
 
 use build::SplitRule;

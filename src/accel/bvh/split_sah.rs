@@ -8,7 +8,7 @@ use super::build::{Split, SplitRule};
 use crate::accel::BuildContext;
 use crate::accel::build_context::CHUNK;
 use crate::accel::reference::{Bounds8, Reference};
-use crate::simd::{LANES, Scalar, Simd, SimdKernel};
+use crate::simd::{Scalar, Simd, SimdKernel};
 
 /// The cost of testing both children of a node.
 pub(super) const NODE_COST: f64 = 1.0;
@@ -32,8 +32,6 @@ impl BinnedSah {
     pub(crate) const FOR_SCALAR_LEAVES: Self = Self { most_in_leaf: 8, least_split: 1, bin_count: MOST_BINS };
     /// Leaves to be merged into such as are tested at once.
     pub(crate) const FOR_WIDE_LEAVES: Self = Self { most_in_leaf: 4, least_split: 4, bin_count: MOST_BINS };
-    /// Such leaves at once, and fewer bins: a faster build.
-    pub(crate) const FOR_WIDE_LEAVES_SOON: Self = Self { most_in_leaf: LANES, least_split: LANES, bin_count: 8 };
 
     /// The cheapest plane, if a split there is worth it.
     #[inline(always)]

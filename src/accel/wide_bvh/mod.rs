@@ -24,12 +24,12 @@ use leaves::{ByAxis, LeafForm, Leaves};
 use node::{Child, WideNode};
 use wavefront::Wavefront;
 
-use super::bvh::{BinnedSah, build, reinsert};
+use super::bvh::{BinnedSah, Morton, build, reinsert};
 use super::reference::{Reference, TriangleSource};
 use super::stats::Shape;
 use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
 use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
-use crate::simd::{Simd, prefetch_lines};
+use crate::simd::{LANES, Simd, prefetch_lines};
 
 /// The form of its leaves makes no difference to what it answers.
 pub(crate) struct WideBvh<F = ByAxis> {
@@ -55,11 +55,16 @@ impl<F: LeafForm> WideBvh<F> {
         let count = references.len();
         check_count::<F>(count)?;
         context.expect(2 * count);
-        let rule = match quality {
-            Quality::Low => &BinnedSah::FOR_WIDE_LEAVES_SOON,
-            Quality::Medium | Quality::High => &BinnedSah::FOR_WIDE_LEAVES,
+        let mut tree = match quality {
+            Quality::Low => {
+                let rule = Morton::new(&bounds, LANES);
+                references = rule.sort(references, context)?;
+                build::build(&mut references, &rule, source, context)?
+            }
+            Quality::Medium | Quality::High => {
+                build::build(&mut references, &BinnedSah::FOR_WIDE_LEAVES, source, context)?
+            }
         };
-        let mut tree = build::build(&mut references, rule, source, context)?;
         let mut reordered = Vec::new();
         if quality == Quality::High {
             tree = reinsert::reinsert(tree, &mut reordered, context)?;
