@@ -85,7 +85,12 @@ pub(crate) trait PrecisionMode {
     ) -> Option<TriangleHit>;
 
     /// The hit of a triangle whose `f32` edge functions have one sign, none zero, where those are all that it takes.
-    fn evaluate_sheared(ray: &TriangleRay, sheared: &Weights<f32>, z: &[f32; 3]) -> Option<TriangleHit>;
+    fn evaluate_sheared(
+        ray: &TriangleRay,
+        corners: &Corners,
+        sheared: &Weights<f32>,
+        z: &[f32; 3],
+    ) -> Option<TriangleHit>;
 
     /// For such a triangle what the answer is made of, where that does not need more.
     fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Evaluation>;
@@ -118,7 +123,8 @@ impl TriangleRay {
     /// The closed triangle against the closed interval of the line.
     #[inline(always)]
     pub(crate) fn hit<P: PrecisionMode>(&self, triangle: &Triangle, interval: Interval) -> Option<TriangleHit> {
-        let (x, y, z) = self.shear(&self.corners(triangle));
+        let corners = self.corners(triangle);
+        let (x, y, z) = self.shear(&corners);
 
         // Rounding keeps order, so the difference of two rounded products never has the wrong sign: it can only be
         // zero, or NaN where both overflowed. A nonzero sign settles it here; the rest is settled in f64, where these
@@ -129,7 +135,7 @@ impl TriangleRay {
             return None;
         }
         if edges.iter().all(|edge| *edge != 0.0)
-            && let Some(hit) = P::evaluate_sheared(self, &edges, &z)
+            && let Some(hit) = P::evaluate_sheared(self, &corners, &edges, &z)
         {
             return Some(hit).filter(|hit| interval.contains(hit.t));
         }
@@ -216,15 +222,38 @@ impl TriangleRay {
 impl PrecisionMode for Fast {
     const HAS_LANES: bool = false;
 
-    /// Relative to the first vertex, so that most of `t` is not multiplied by anything that is off.
+    /// `t` from the triangle's plane or from the weights, whichever is off by less. In roundings, times the distance from the
+    /// origin and over the weights' sum, the first is off by the length of the normal, the second by the range of depths
+    /// times the size of the triangle as the ray sees it: where that is small beside the normal, weights are better.
+    /// Weights alone make long triangles seen at an angle hit the rays that leave them.
     #[inline(always)]
-    fn evaluate_sheared(ray: &TriangleRay, [a, b, c]: &Weights<f32>, z: &[f32; 3]) -> Option<TriangleHit> {
+    fn evaluate_sheared(
+        ray: &TriangleRay,
+        corners: &Corners,
+        [a, b, c]: &Weights<f32>,
+        z: &[f32; 3],
+    ) -> Option<TriangleHit> {
         let per_sum = 1.0 / (a + b + c);
         let (u, v) = (b * per_sum, c * per_sum);
-        let between = z[0] + (u * (z[1] - z[0]) + v * (z[2] - z[0]));
-        // Rounding does not lead out of the triangle, or its box could be passed over.
+        let [kx, ky, kz] = ray.axes.map(|axis| axis & 3);
+        let edges = |[a, b, c]: [f32; 3]| (b - a, c - a);
+        let (x, y, depth) = (edges(corners[0]), edges(corners[1]), edges(corners[2]));
+        let normal = [y.0 * depth.1 - depth.0 * y.1, depth.0 * x.1 - x.0 * depth.1, x.0 * y.1 - y.0 * x.1];
+        let along = |p: [f32; 3]| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
+        let distance = along([corners[0][0] - ray.origin[kx], corners[1][0] - ray.origin[ky], z[0]]);
+        let direction = [ray.direction[kx], ray.direction[ky], ray.direction[kz]];
+        // Measured: from 1 on CAD loses rays' origins, at 0 scans have twice the error.
+        const SHARE: f32 = 0.25;
+        let size = x.0.abs().max(x.1.abs()).max(y.0.abs()).max(y.1.abs());
+        let depth_range = depth.0.abs().max(depth.1.abs());
+        let between = if depth_range * size > SHARE * (normal[0].abs() + normal[1].abs() + normal[2].abs()) {
+            distance / along(direction) * direction[2]
+        } else {
+            z[0] + (u * depth.0 + v * depth.1)
+        };
+        // Rounding does not lead out of the triangle, or its box could be passed over. This makes a number of a NaN.
         let (least, most) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
-        let t = between.max(least).min(most) / ray.direction[ray.axes[2] & 3];
+        let t = between.max(least).min(most) / direction[2];
         // Not where something was beyond the range of `f32`.
         (t.is_finite() & u.is_finite() & v.is_finite()).then_some(TriangleHit { t, u, v })
     }
@@ -241,7 +270,7 @@ impl PrecisionMode for Fast {
     #[inline(always)]
     fn evaluate_certain<S: Simd>(_simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Evaluation> {
         let (x, y, z) = ray.shear(corners);
-        Self::evaluate_sheared(ray, &edge_functions(&x, &y), &z).map(Evaluation::Inside)
+        Self::evaluate_sheared(ray, corners, &edge_functions(&x, &y), &z).map(Evaluation::Inside)
     }
 }
 
@@ -249,7 +278,12 @@ impl PrecisionMode for Accurate {
     const HAS_LANES: bool = true;
 
     #[inline(always)]
-    fn evaluate_sheared(_ray: &TriangleRay, _sheared: &Weights<f32>, _z: &[f32; 3]) -> Option<TriangleHit> {
+    fn evaluate_sheared(
+        _ray: &TriangleRay,
+        _corners: &Corners,
+        _sheared: &Weights<f32>,
+        _z: &[f32; 3],
+    ) -> Option<TriangleHit> {
         None
     }
 
@@ -432,6 +466,27 @@ mod tests {
         let down = Ray { direction: -ray.direction, ..ray };
         let hit = TriangleRay::new(&down).hit::<Accurate>(&triangle, interval).expect("it goes through the floor");
         assert_eq!(hit.t, f32::from_bits(2));
+    }
+
+    #[test]
+    fn fast_rays_that_leave_an_axis_aligned_plane_miss_it() {
+        // Large triangles, seen at every angle from just above: their edge functions are off by more than the distance.
+        let triangle = Triangle::new([[-150.0, 77.925, -90.0], [40.0, 77.925, 160.0], [70.0, 77.925, -80.0]], 0, 0);
+        let mut directions = 0;
+        for x in -9..=9i16 {
+            for z in -9..=9i16 {
+                let direction = Vec3::new(f32::from(x) * 0.37, 1.0, f32::from(z) * 0.41);
+                let origin = Vec3::new(f32::from(x) * 1.7, 77.925f32.next_up(), f32::from(z) * 1.3);
+                for (direction, is_hit) in [(direction, false), (-direction, true)] {
+                    let ray = Ray { origin, t_min: 0.0, direction, t_max: f32::INFINITY };
+                    let interval = Interval { t_min: 0.0, t_max: f32::INFINITY };
+                    let hit = TriangleRay::new(&ray).hit::<Fast>(&triangle, interval);
+                    assert_eq!(hit.is_some(), is_hit, "{ray:?}: {hit:?}");
+                    directions += 1;
+                }
+            }
+        }
+        assert_eq!(directions, 2 * 19 * 19);
     }
 
     #[test]
