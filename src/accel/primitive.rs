@@ -2,7 +2,9 @@
 
 use glam::Vec3;
 
-use crate::geometry::{Aabb, INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
+use crate::geometry::{
+    Aabb, INVALID_ID, Interval, PrecisionMode, Ray, Sphere, SphereRay, Triangle, TriangleHit, TriangleRay,
+};
 
 /// What a hit tells about what it hit.
 pub(crate) trait Surface {
@@ -42,6 +44,9 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
     /// `(geometry_id, primitive_id)`, the order in which equal hits win.
     fn ids(&self) -> (u32, u32);
 
+    /// The same one under other ids.
+    fn with_ids(self, geometry_id: u32, primitive_id: u32) -> Self;
+
     /// What two of the same place and size have in common, to the bit.
     type Shape: Ord;
 
@@ -73,11 +78,53 @@ impl Primitive for Triangle {
         (self.geometry_id, self.primitive_id)
     }
 
+    #[inline(always)]
+    fn with_ids(self, geometry_id: u32, primitive_id: u32) -> Self {
+        Self { geometry_id, primitive_id, ..self }
+    }
+
     fn shape(&self) -> Self::Shape {
         self.axes.map(|row| row.map(f32::to_bits))
     }
 
     fn bounds(&self) -> Aabb {
         Triangle::bounds(self)
+    }
+}
+
+impl Primitive for Sphere {
+    type Ray = SphereRay;
+    type Shape = [u32; 4];
+
+    const NONE: Self =
+        Self { centre: [f32::NAN; 3], radius: f32::NAN, geometry_id: INVALID_ID, primitive_id: INVALID_ID };
+
+    #[inline(always)]
+    fn make_ready(ray: &Ray) -> SphereRay {
+        SphereRay::new(ray)
+    }
+
+    #[inline(always)]
+    fn hit<P: PrecisionMode>(&self, ray: &SphereRay, interval: Interval) -> Option<TriangleHit> {
+        Sphere::hit(self, ray, interval)
+    }
+
+    #[inline(always)]
+    fn ids(&self) -> (u32, u32) {
+        (self.geometry_id, self.primitive_id)
+    }
+
+    #[inline(always)]
+    fn with_ids(self, geometry_id: u32, primitive_id: u32) -> Self {
+        Self { geometry_id, primitive_id, ..self }
+    }
+
+    fn shape(&self) -> [u32; 4] {
+        let [x, y, z] = self.centre.map(f32::to_bits);
+        [x, y, z, self.radius.to_bits()]
+    }
+
+    fn bounds(&self) -> Aabb {
+        Sphere::bounds(self)
     }
 }

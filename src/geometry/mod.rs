@@ -5,6 +5,7 @@ mod evaluation;
 mod evaluation_lanes;
 mod mesh_view;
 mod ray;
+mod sphere;
 mod triangle;
 mod triangle_hit;
 
@@ -13,5 +14,6 @@ pub(crate) use aabb::{ObliqueSlabs, SlabRay, band_distance};
 pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};
 pub use mesh_view::{IndexBytes, IndexView, PositionView, TriangleView, span_bytes};
 pub use ray::{Hit, INVALID_ID, Ray};
+pub(crate) use sphere::{Sphere, SphereRay};
 pub(crate) use triangle::Triangle;
 pub(crate) use triangle_hit::{Accurate, Fast, Interval, PrecisionMode, TriangleHit, TriangleRay};

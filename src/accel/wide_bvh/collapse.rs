@@ -11,7 +11,7 @@ use super::node::{Child, WideNode};
 use crate::accel::build_context::slices;
 use crate::accel::bvh::build::{BinaryTree, Subtree};
 use crate::accel::bvh::node::{MOST_LEVELS, Node};
-use crate::accel::reference::{Reference, TriangleSource};
+use crate::accel::reference::{PrimitiveSource, Reference};
 use crate::accel::{BuildContext, BuildFailure};
 use crate::geometry::Aabb;
 use crate::simd::{LANES, Simd, SimdKernel};
@@ -213,7 +213,7 @@ struct Place {
     first_leaf: usize,
 }
 
-pub(super) fn collapse<F: LeafForm, T: TriangleSource>(
+pub(super) fn collapse<F: LeafForm, T: PrimitiveSource<Primitive = F::Primitive>>(
     tree: BinaryTree,
     bounds: Aabb,
     source: &T,
@@ -297,7 +297,7 @@ fn emit_top<F: LeafForm>(
     parts: &[Part],
     places: &[Place],
     nodes: &mut [WideNode],
-    source: &impl TriangleSource,
+    source: &impl PrimitiveSource<Primitive = F::Primitive>,
 ) -> Child {
     let mut next = 1;
     for (node, entries) in nodes.iter_mut().zip(entries) {
@@ -332,7 +332,11 @@ impl WideNode {
 
 impl Part<'_> {
     /// What the subtree has for the wide node above it.
-    fn children<F: LeafForm>(&self, place: &Place, source: &impl TriangleSource) -> Children {
+    fn children<F: LeafForm>(
+        &self,
+        place: &Place,
+        source: &impl PrimitiveSource<Primitive = F::Primitive>,
+    ) -> Children {
         let (mut next_node, mut next_leaf) = (place.first_node, 0);
         let mut child = |entry: Entry| {
             let node = self.plan.nodes[entry.node];
@@ -366,8 +370,8 @@ struct Shape {
     depth: u32,
 }
 
-impl<T: TriangleSource> Emission<'_, T> {
-    fn run<F: LeafForm>(mut self) -> Shape {
+impl<T: PrimitiveSource> Emission<'_, T> {
+    fn run<F: LeafForm<Primitive = T::Primitive>>(mut self) -> Shape {
         let plan = &self.part.plan;
         let mut shape = Shape { leaf_count: 0, depth: self.place.level };
         let (mut next, mut pending) = (0, Vec::new());
@@ -387,7 +391,7 @@ impl<T: TriangleSource> Emission<'_, T> {
     }
 
     /// A leaf with its triangles, or the next node, to be filled later.
-    fn emit<F: LeafForm>(
+    fn emit<F: LeafForm<Primitive = T::Primitive>>(
         &mut self,
         node: usize,
         level: u32,

@@ -3,10 +3,12 @@
 
 use arrayvec::ArrayVec;
 
-use super::leaves::{Ids, LeafForm, LeafRows, LeafTriangles};
+use super::leaf_test::TriangleTest;
+use super::leaves::{Ids, LeafForm, LeafRows, LeafTriangles, TriangleForm};
 use super::node::Child;
 use crate::accel::reference::{Reference, TriangleSource};
 use crate::accel::{BuildContext, BuildFailure};
+use crate::geometry::Triangle;
 use crate::simd::{LANES, Simd};
 
 /// A leaf of n triangles with v distinct vertices has `3 n` bytes, for each triangle where its three vertices begin among
@@ -45,7 +47,7 @@ const _: () = {
         count += 1;
     }
     // 44 million; of an ordinary mesh a reference could name twice as many.
-    assert!(Compact::MOST_TRIANGLES == 44_739_242);
+    assert!(Compact::MOST_PRIMITIVES == 44_739_242);
 };
 
 const fn index_words(count: usize) -> usize {
@@ -85,10 +87,12 @@ impl Welded {
 }
 
 impl LeafForm for Compact {
-    type Leaf<'a> = CompactLeaf<'a>;
+    type Primitive = Triangle;
+    type Test<'a> = TriangleTest<'a, Self>;
 
     const PLACE_WORDS: usize = PLACE_WORDS;
-    const MOST_TRIANGLES: usize = Child::MOST_PLACES / MOST_PLACES;
+    /// However few vertices they share.
+    const MOST_PRIMITIVES: usize = Child::MOST_PLACES / MOST_PLACES;
 
     fn words(place_count: usize, context: &BuildContext) -> Result<Vec<f32>, BuildFailure> {
         let spare = (HEADER + REACH).div_ceil(PLACE_WORDS);
@@ -137,6 +141,15 @@ impl LeafForm for Compact {
         words[..coordinates.len()].copy_from_slice(coordinates);
         welded.place_count()
     }
+
+    #[inline(always)]
+    fn primitive(words: &[f32], count: usize, lane: usize) -> Triangle {
+        Self::leaf(words, count).triangle(lane)
+    }
+}
+
+impl TriangleForm for Compact {
+    type Leaf<'a> = CompactLeaf<'a>;
 
     #[inline(always)]
     fn leaf(words: &[f32], count: usize) -> CompactLeaf<'_> {

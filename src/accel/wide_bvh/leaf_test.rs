@@ -1,4 +1,4 @@
-//! A leaf's eight triangles against a ray, and the best hit so far.
+//! What a leaf holds against a ray, and the best hit so far; and the test of triangles, eight at once.
 //!
 //! `f32` refuses most triangles, by their edge functions and by bounds of `t` that need no division: the least and the
 //! greatest `z / dz` of the vertices. What is left is evaluated at once.
@@ -6,16 +6,41 @@
 use glam::Vec4;
 
 use super::WideBvh;
-use super::leaves::{LeafForm, LeafRows, LeafTriangles};
+use super::leaves::{LeafForm, LeafRows, LeafTriangles, TriangleForm};
 use super::node::Child;
+use crate::accel::Primitive;
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
+use crate::geometry::{Interval, PrecisionMode, Ray, TriangleHit, TriangleRay};
 use crate::math::UNIT_ROUNDOFF;
 use crate::simd::Simd;
 
+/// A ray made ready for what leaves of a form hold.
+pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
+    fn new(bvh: &'a WideBvh<F>, ray: &Ray) -> Self;
+
+    /// For directions of unusual length.
+    fn check_range(&mut self);
+
+    fn t_min(&self) -> f32;
+
+    /// Keeps the best hit; `t_min` is that of the ray, `t_max` that of the best hit. True ends the query. Must be
+    /// `#[inline(always)]`.
+    fn test<Q: Query, P: PrecisionMode, S: Simd>(
+        &self,
+        simd: S,
+        child: Child,
+        t_min: S::F32x8,
+        t_max: f32,
+        best: &mut Best,
+    ) -> bool;
+
+    /// The best hit, with its primitive.
+    fn finish(&self, best: &Best) -> Option<ClosestHit<F::Primitive>>;
+}
+
 /// Eight triangles against a ray: the scalar test decides about those that are not refused here, and refuses all that
 /// are.
-pub(super) struct LeafTest<'a, F> {
+pub(crate) struct TriangleTest<'a, F> {
     bvh: &'a WideBvh<F>,
     ray: TriangleRay,
     t_min: f32,
@@ -26,7 +51,7 @@ type Corners<S> = [<S as Simd>::F32x8; 3];
 
 /// The best hit so far.
 #[derive(Clone, Copy)]
-pub(super) struct Best {
+pub(crate) struct Best {
     /// Its `t`, `u` and `v`; while there is none the ray's `t_max`. Stored and loaded as a whole: a load that spans several
     /// stores waits for all of them.
     hit: Vec4,
@@ -34,15 +59,27 @@ pub(super) struct Best {
 }
 
 #[derive(Clone, Copy)]
-struct Place {
+pub(super) struct Place {
     leaf: Child,
     lane: u32,
 }
 
+impl Place {
+    pub(super) fn new(leaf: Child, lane: u32) -> Self {
+        Self { leaf, lane }
+    }
+
+    /// See [`LeafForm::primitive`].
+    #[inline(always)]
+    pub(super) fn primitive<F: LeafForm>(self, bvh: &WideBvh<F>) -> F::Primitive {
+        bvh.leaves.primitive(self.leaf.triangles(), self.lane as usize)
+    }
+}
+
 /// Triangles that the ray may hit between `t_min` and the best hit, as bits.
 #[derive(Clone, Copy)]
-pub(super) struct Candidates {
-    pub(super) lanes: u32,
+struct Candidates {
+    lanes: u32,
     /// Those of them that the scalar test surely takes, somewhere.
     sure: u32,
     /// Those that the ray surely meets after `t_min` and before the best hit, if they are taken.
@@ -52,7 +89,7 @@ pub(super) struct Candidates {
 impl Candidates {
     /// Whether one is hit for certain, whichever it is.
     #[inline(always)]
-    pub(super) fn are_hit(&self) -> bool {
+    fn are_hit(&self) -> bool {
         self.lanes & self.sure & self.inside != 0
     }
 }
@@ -69,30 +106,67 @@ impl Best {
     pub(super) fn t_max(&self) -> f32 {
         self.hit.x
     }
+
+    /// Keeps a hit at `t_max` or before it, if it is better.
+    #[inline(always)]
+    pub(super) fn improve<F: LeafForm>(&mut self, bvh: &WideBvh<F>, hit: TriangleHit, place: Place) {
+        if hit.t < self.hit.x || has_lower_ids(bvh, place, self.place) {
+            *self = Self { hit: Vec4::new(hit.t, hit.u, hit.v, 0.0), place };
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn found<F: LeafForm>(&self, bvh: &WideBvh<F>) -> Option<ClosestHit<F::Primitive>> {
+        if self.place.leaf == Child::NONE {
+            return None;
+        }
+        let [t, u, v, _] = self.hit.to_array();
+        Some(bvh.leaves.resolve(ClosestHit { t, u, v, primitive: self.place.primitive(bvh) }))
+    }
 }
 
-impl<'a, F: LeafForm> LeafTest<'a, F> {
+impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     #[inline(always)]
-    pub(super) fn new(bvh: &'a WideBvh<F>, ray: &Ray) -> Self {
+    fn new(bvh: &'a WideBvh<F>, ray: &Ray) -> Self {
         Self { bvh, ray: TriangleRay::new(ray), t_min: ray.t_min }
     }
 
     /// For directions so short that `1 / dz` overflows: its bounds of `t` then decide nothing, being NaN.
     #[inline(always)]
-    pub(super) fn check_range(&mut self) {
+    fn check_range(&mut self) {
         if self.ray.per_z[3].is_infinite() {
             self.ray.per_z[3] = f32::NAN;
         }
     }
 
     #[inline(always)]
-    pub(super) fn t_min(&self) -> f32 {
+    fn t_min(&self) -> f32 {
         self.t_min
     }
 
+    #[inline(always)]
+    fn test<Q: Query, P: PrecisionMode, S: Simd>(
+        &self,
+        simd: S,
+        child: Child,
+        t_min: S::F32x8,
+        t_max: f32,
+        best: &mut Best,
+    ) -> bool {
+        let candidates = self.candidates(simd, child, t_min, t_max);
+        (Q::FIRST_HIT_ENDS && candidates.are_hit()) || self.choose::<Q, P, S>(simd, child, candidates, best)
+    }
+
+    #[inline(always)]
+    fn finish(&self, best: &Best) -> Option<ClosestHit> {
+        best.found(self.bvh)
+    }
+}
+
+impl<F: TriangleForm> TriangleTest<'_, F> {
     /// Keeps the best hit. True ends the query.
     #[inline(always)]
-    pub(super) fn choose<Q: Query, P: PrecisionMode, S: Simd>(
+    fn choose<Q: Query, P: PrecisionMode, S: Simd>(
         &self,
         simd: S,
         child: Child,
@@ -111,14 +185,11 @@ impl<'a, F: LeafForm> LeafTest<'a, F> {
             } else {
                 self.hit::<P>(&leaf, lane, interval)
             };
-            if let Some(TriangleHit { t, u, v }) = hit {
+            if let Some(hit) = hit {
                 if Q::FIRST_HIT_ENDS {
                     return true;
                 }
-                let place = Place { leaf: child, lane };
-                if t < best.hit.x || self.has_lower_ids(place, best.place) {
-                    *best = Best { hit: Vec4::new(t, u, v, 0.0), place };
-                }
+                best.improve(self.bvh, hit, Place::new(child, lane));
             }
         }
         false
@@ -134,7 +205,7 @@ impl<'a, F: LeafForm> LeafTest<'a, F> {
     ///
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure, nor surely inside.
     #[inline(always)]
-    pub(super) fn candidates<S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
+    fn candidates<S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
         let leaf = self.bvh.leaves.leaf(child.triangles());
         let rows = leaf.unpacked(simd);
         let ray = &self.ray;
@@ -191,27 +262,12 @@ impl<'a, F: LeafForm> LeafTest<'a, F> {
     fn hit<P: PrecisionMode>(&self, leaf: &F::Leaf<'_>, lane: u32, interval: Interval) -> Option<TriangleHit> {
         self.ray.hit::<P>(&leaf.triangle(lane as usize), interval)
     }
+}
 
-    #[cold]
-    #[inline(never)]
-    fn has_lower_ids(&self, a: Place, b: Place) -> bool {
-        b.leaf == Child::NONE || self.triangle(a).primitive_id < self.triangle(b).primitive_id
-    }
-
-    #[inline(always)]
-    fn triangle(&self, place: Place) -> Triangle {
-        self.bvh.leaves.leaf(place.leaf.triangles()).triangle(place.lane as usize)
-    }
-
-    /// The best hit, with its triangle.
-    #[inline(always)]
-    pub(super) fn finish(&self, best: &Best) -> Option<ClosestHit> {
-        if best.place.leaf == Child::NONE {
-            return None;
-        }
-        let [t, u, v, _] = best.hit.to_array();
-        Some(self.bvh.leaves.resolve(ClosestHit { t, u, v, primitive: self.triangle(best.place) }))
-    }
+#[cold]
+#[inline(never)]
+fn has_lower_ids<F: LeafForm>(bvh: &WideBvh<F>, a: Place, b: Place) -> bool {
+    b.leaf == Child::NONE || a.primitive(bvh).ids() < b.primitive(bvh).ids()
 }
 
 #[inline(always)]

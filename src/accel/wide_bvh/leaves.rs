@@ -1,38 +1,40 @@
-//! The triangles of all leaves, in a form that kernels and builder are generic over; and the ordinary form, each leaf by
-//! coordinate: what one load brings is one coordinate of all its triangles.
+//! What all leaves hold, in a form that kernels and builder are generic over; and the ordinary form of triangles, each leaf
+//! by coordinate: what one load brings is one coordinate of all its triangles.
 
 use std::marker::PhantomData;
 
+use super::leaf_test::{LeafTest, TriangleTest};
 use super::node::Child;
 use crate::accel::build_context::slices;
-use crate::accel::reference::{Reference, TriangleSource};
-use crate::accel::{BuildContext, BuildFailure, ClosestHit};
+use crate::accel::reference::{PrimitiveSource, Reference, TriangleSource};
+use crate::accel::{BuildContext, BuildFailure, ClosestHit, Primitive};
 use crate::geometry::Triangle;
 use crate::simd::{LANES, Simd};
 
-/// How the triangles of a leaf are stored.
-pub(crate) trait LeafForm: Copy + Send + Sync {
-    type Leaf<'a>: LeafTriangles;
+/// How the primitives of a leaf are stored, and tested.
+pub(crate) trait LeafForm: Copy + Send + Sync + 'static {
+    type Primitive: Primitive;
+    type Test<'a>: LeafTest<'a, Self>;
 
     /// What a reference to a leaf counts in.
     const PLACE_WORDS: usize;
-    /// However few vertices they share, so many triangles have places that a reference can name.
-    const MOST_TRIANGLES: usize;
+    /// So many primitives surely have places that a reference can name.
+    const MOST_PRIMITIVES: usize;
 
     /// Room for so many places, and beyond them for what the last leaf's kernel may read.
     fn words(place_count: usize, context: &BuildContext) -> Result<Vec<f32>, BuildFailure>;
 
     /// How many places a leaf takes.
-    fn size(references: &[Reference], source: &impl TriangleSource) -> usize;
+    fn size(references: &[Reference], source: &impl PrimitiveSource<Primitive = Self::Primitive>) -> usize;
 
     /// How many places a subtree's leaves take.
     fn subtree_size<'r>(
         references: &[Reference],
         leaves: impl Iterator<Item = &'r [Reference]>,
-        source: &impl TriangleSource,
+        source: &impl PrimitiveSource<Primitive = Self::Primitive>,
     ) -> usize;
 
-    /// Where a leaf goes that begins with the `first`-th of its subtree's triangles, when the leaf before ended at `next`.
+    /// Where a leaf goes that begins with the `first`-th of its subtree's primitives, when the leaf before ended at `next`.
     fn place(first: usize, next: usize) -> usize;
 
     /// Writes a leaf, and returns how many places it takes.
@@ -41,8 +43,17 @@ pub(crate) trait LeafForm: Copy + Send + Sync {
         place: usize,
         references: &[Reference],
         ids: &Ids,
-        source: &impl TriangleSource,
+        source: &impl PrimitiveSource<Primitive = Self::Primitive>,
     ) -> usize;
+
+    /// One of the leaf whose words come first, with geometry and primitive joined into one number, in place of the
+    /// primitive: [`Leaves::resolve`] separates them.
+    fn primitive(words: &[f32], count: usize, lane: usize) -> Self::Primitive;
+}
+
+/// A form of triangles.
+pub(crate) trait TriangleForm: LeafForm<Primitive = Triangle> {
+    type Leaf<'a>: LeafTriangles;
 
     /// The leaf whose words come first.
     fn leaf(words: &[f32], count: usize) -> Self::Leaf<'_>;
@@ -69,8 +80,7 @@ pub(crate) trait LeafTriangles: Copy {
     /// Geometry and primitive as one number.
     fn id(&self, lane: usize) -> u32;
 
-    /// With geometry and primitive joined into one number, in place of the primitive: [`Leaves::resolve`] separates
-    /// them.
+    /// See [`LeafForm::primitive`].
     #[inline(always)]
     fn triangle(&self, lane: usize) -> Triangle {
         Triangle {
@@ -84,7 +94,7 @@ pub(crate) trait LeafTriangles: Copy {
 pub(super) struct Leaves<F> {
     words: Vec<f32>,
     leaf_count: usize,
-    triangle_count: usize,
+    primitive_count: usize,
     ids: Ids,
     form: PhantomData<F>,
 }
@@ -93,12 +103,12 @@ impl<F: LeafForm> Leaves<F> {
     /// Room for so many places, to be filled leaf by leaf.
     pub(super) fn filled(
         place_count: usize,
-        triangle_count: usize,
+        primitive_count: usize,
         ids: Ids,
         context: &BuildContext,
     ) -> Result<Self, BuildFailure> {
         let words = F::words(place_count, context)?;
-        Ok(Self { words, leaf_count: 0, triangle_count, ids, form: PhantomData })
+        Ok(Self { words, leaf_count: 0, primitive_count, ids, form: PhantomData })
     }
 
     /// The words of runs of so many places each, and the ids to write into them.
@@ -111,9 +121,16 @@ impl<F: LeafForm> Leaves<F> {
         self.leaf_count = leaf_count;
     }
 
+    /// The words from a leaf's first one on.
     #[inline(always)]
-    pub(super) fn leaf(&self, (place, count): (usize, usize)) -> F::Leaf<'_> {
-        F::leaf(&self.words[place * F::PLACE_WORDS..], count)
+    pub(super) fn words_from(&self, place: usize) -> &[f32] {
+        &self.words[place * F::PLACE_WORDS..]
+    }
+
+    /// See [`LeafForm::primitive`].
+    #[inline(always)]
+    pub(super) fn primitive(&self, (place, count): (usize, usize), lane: usize) -> F::Primitive {
+        F::primitive(self.words_from(place), count, lane)
     }
 
     /// Where a leaf's words are, for a prefetch.
@@ -126,8 +143,8 @@ impl<F: LeafForm> Leaves<F> {
         self.leaf_count
     }
 
-    pub(super) fn triangle_count(&self) -> usize {
-        self.triangle_count
+    pub(super) fn primitive_count(&self) -> usize {
+        self.primitive_count
     }
 
     pub(super) fn bytes(&self) -> usize {
@@ -139,11 +156,19 @@ impl<F: LeafForm> Leaves<F> {
         self.words.iter().map(|word| word.to_bits())
     }
 
-    /// The hit with its triangle's own ids.
+    /// The hit with its primitive's own ids.
     #[inline(always)]
-    pub(super) fn resolve(&self, mut hit: ClosestHit) -> ClosestHit {
-        (hit.primitive.geometry_id, hit.primitive.primitive_id) = self.ids.separate(hit.primitive.primitive_id);
-        hit
+    pub(super) fn resolve(&self, hit: ClosestHit<F::Primitive>) -> ClosestHit<F::Primitive> {
+        let (_, joined) = hit.primitive.ids();
+        let (geometry_id, primitive_id) = self.ids.separate(joined);
+        ClosestHit { primitive: hit.primitive.with_ids(geometry_id, primitive_id), ..hit }
+    }
+}
+
+impl<F: TriangleForm> Leaves<F> {
+    #[inline(always)]
+    pub(super) fn leaf(&self, (place, count): (usize, usize)) -> F::Leaf<'_> {
+        F::leaf(self.words_from(place), count)
     }
 }
 
@@ -169,10 +194,11 @@ pub(crate) struct Leaf<'a> {
 }
 
 impl LeafForm for ByAxis {
-    type Leaf<'a> = Leaf<'a>;
+    type Primitive = Triangle;
+    type Test<'a> = TriangleTest<'a, Self>;
 
     const PLACE_WORDS: usize = WORDS;
-    const MOST_TRIANGLES: usize = Child::MOST_PLACES;
+    const MOST_PRIMITIVES: usize = Child::MOST_PLACES;
 
     fn words(place_count: usize, context: &BuildContext) -> Result<Vec<f32>, BuildFailure> {
         Ok(context.filled(place_count + WINDOW.div_ceil(WORDS), [0.0; WORDS])?.into_flattened())
@@ -212,6 +238,15 @@ impl LeafForm for ByAxis {
         }
         count
     }
+
+    #[inline(always)]
+    fn primitive(words: &[f32], count: usize, lane: usize) -> Triangle {
+        Self::leaf(words, count).triangle(lane)
+    }
+}
+
+impl TriangleForm for ByAxis {
+    type Leaf<'a> = Leaf<'a>;
 
     #[inline(always)]
     fn leaf(words: &[f32], count: usize) -> Leaf<'_> {

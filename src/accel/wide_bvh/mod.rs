@@ -11,6 +11,7 @@ mod leaf_test;
 mod leaves;
 mod node;
 mod packet;
+mod sphere_leaves;
 #[cfg(test)]
 mod tests;
 mod traverse;
@@ -22,10 +23,11 @@ pub(crate) use compact_leaves::Compact;
 use glam::Vec4;
 use leaves::{ByAxis, LeafForm, Leaves};
 use node::{Child, WideNode};
+pub(crate) use sphere_leaves::Spheres;
 use wavefront::Wavefront;
 
 use super::bvh::{BinnedSah, Morton, build, reinsert};
-use super::reference::{Reference, TriangleSource};
+use super::reference::{PrimitiveSource, Reference};
 use super::stats::Shape;
 use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
 use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
@@ -49,7 +51,7 @@ impl<F: LeafForm> WideBvh<F> {
         mut references: Vec<Reference>,
         bounds: Aabb,
         quality: Quality,
-        source: &impl TriangleSource,
+        source: &impl PrimitiveSource<Primitive = F::Primitive>,
         context: &BuildContext,
     ) -> Result<Self, BuildFailure> {
         let count = references.len();
@@ -91,7 +93,7 @@ impl<F: LeafForm> WideBvh<F> {
 
     pub(crate) fn shape(&self) -> Shape {
         Shape {
-            reference_count: self.leaves.triangle_count(),
+            reference_count: self.leaves.primitive_count(),
             node_count: self.nodes.len() + self.leaves.leaf_count(),
             leaf_count: self.leaves.leaf_count(),
             depth: self.depth,
@@ -103,7 +105,7 @@ impl<F: LeafForm> WideBvh<F> {
 }
 
 fn check_count<F: LeafForm>(count: usize) -> Result<(), BuildFailure> {
-    let limit = F::MOST_TRIANGLES;
+    let limit = F::MOST_PRIMITIVES;
     if count > limit { Err(BuildFailure::TooManyTriangles { count, limit }) } else { Ok(()) }
 }
 

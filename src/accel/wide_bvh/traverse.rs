@@ -68,7 +68,7 @@ where
     P: PrecisionMode,
     F: LeafForm,
     I: Into<Ray>,
-    T: FnOnce(Option<ClosestHit>, Q::Tally) -> R,
+    T: FnOnce(Option<ClosestHit<F::Primitive>>, Q::Tally) -> R,
 {
     type Output = R;
 
@@ -92,8 +92,12 @@ where
 /// A ray that runs along a plane, or of unusual length, or from behind its origin, or not valid.
 struct AlongPlanes<'a, Q, P, F, T>(Traversal<'a, Q, P, F, Ray, T>);
 
-impl<Q: Query, P: PrecisionMode, F: LeafForm, R, T: FnOnce(Option<ClosestHit>, Q::Tally) -> R> SimdKernel
-    for AlongPlanes<'_, Q, P, F, T>
+impl<Q, P, F, R, T> SimdKernel for AlongPlanes<'_, Q, P, F, T>
+where
+    Q: Query,
+    P: PrecisionMode,
+    F: LeafForm,
+    T: FnOnce(Option<ClosestHit<F::Primitive>>, Q::Tally) -> R,
 {
     type Output = R;
 
@@ -106,17 +110,17 @@ impl<Q: Query, P: PrecisionMode, F: LeafForm, R, T: FnOnce(Option<ClosestHit>, Q
         let mut stack = Aligned(Stack::new_const());
         let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
         let mut walk = Walk::<Q, F>::new(bvh, &ray, &mut stack.0);
-        walk.triangles.check_range();
+        walk.leaves.check_range();
         let found = walk.run::<P, S, _>(simd, &boxes);
         then(found, walk.tally)
     }
 }
 
 /// A ray on its way through the tree.
-struct Walk<'a, Q: Query, F> {
+struct Walk<'a, Q: Query, F: LeafForm> {
     bvh: &'a WideBvh<F>,
     stack: &'a mut Stack,
-    triangles: LeafTest<'a, F>,
+    leaves: F::Test<'a>,
     best: Best,
     tally: Q::Tally,
 }
@@ -125,14 +129,14 @@ impl<'a, Q: Query, F: LeafForm> Walk<'a, Q, F> {
     #[inline(always)]
     fn new(bvh: &'a WideBvh<F>, ray: &Ray, stack: &'a mut Stack) -> Self {
         stack.push(Pending::new(0, bvh.root));
-        Self { bvh, stack, triangles: LeafTest::new(bvh, ray), best: Best::none(ray), tally: Q::Tally::default() }
+        Self { bvh, stack, leaves: F::Test::new(bvh, ray), best: Best::none(ray), tally: Q::Tally::default() }
     }
 
     #[inline(always)]
-    fn run<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> Option<ClosestHit> {
+    fn run<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> Option<ClosestHit<F::Primitive>> {
         let bvh = self.bvh;
         let nodes = bvh.nodes.as_slice();
-        let t_min = simd.splat(self.triangles.t_min());
+        let t_min = simd.splat(self.leaves.t_min());
         let box_test = boxes.prepare(simd);
         loop {
             let t_max = self.best.t_max();
@@ -141,7 +145,7 @@ impl<'a, Q: Query, F: LeafForm> Walk<'a, Q, F> {
             // A child that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
             let mut child = loop {
                 let Some(pending) = self.stack.pop() else {
-                    return if Q::FIRST_HIT_ENDS { None } else { self.triangles.finish(&self.best) };
+                    return if Q::FIRST_HIT_ENDS { None } else { self.leaves.finish(&self.best) };
                 };
                 if Q::FIRST_HIT_ENDS || pending <= last {
                     break pending.child();
@@ -150,11 +154,7 @@ impl<'a, Q: Query, F: LeafForm> Walk<'a, Q, F> {
             loop {
                 if child.is_leaf() {
                     self.tally.test_primitives(child.triangles().1);
-                    let candidates = self.triangles.candidates(simd, child, t_min, t_max);
-                    if Q::FIRST_HIT_ENDS && candidates.are_hit() {
-                        return Some(ClosestHit::UNSPECIFIED);
-                    }
-                    if self.triangles.choose::<Q, P, S>(simd, child, candidates, &mut self.best) {
+                    if self.leaves.test::<Q, P, S>(simd, child, t_min, t_max, &mut self.best) {
                         return Some(ClosestHit::UNSPECIFIED);
                     }
                     break;

@@ -2,8 +2,9 @@
 
 use super::WideBvh;
 use super::collapse::{LEAF_COST, NODE_COST};
-use super::leaves::{LeafForm, LeafTriangles};
+use super::leaves::LeafForm;
 use super::node::Child;
+use crate::accel::Primitive;
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::geometry::Aabb;
 use crate::simd::LANES;
@@ -58,11 +59,10 @@ impl<F: LeafForm> WideBvh<F> {
     }
 
     fn validate_leaf(&self, child: Child, bounds: &Aabb) -> Result<(), String> {
-        let leaf = self.leaves.leaf(child.triangles());
         for lane in 0..child.triangles().1 {
-            let inside = leaf.triangle(lane).bounds();
+            let inside = self.leaves.primitive(child.triangles(), lane).bounds();
             if !bounds.contains(&inside) {
-                return Err(format!("triangle {lane} of leaf {child:?}: {inside:?} is not inside {bounds:?}"));
+                return Err(format!("primitive {lane} of leaf {child:?}: {inside:?} is not inside {bounds:?}"));
             }
         }
         Ok(())
