@@ -1,4 +1,4 @@
-// gnomon: ray queries against a scene of triangles, with the same answer from every structure.
+// gnomon: ray queries against a scene of triangles and spheres, with the same answer from every structure.
 //
 // Conventions
 //   Coordinates are floats in any one unit and handedness. A ray is origin + t * direction for t in the closed
@@ -133,7 +133,7 @@
 // An immutable scene; any number of threads may query it at a time.
 typedef struct GnomonScene GnomonScene;
 
-// Collects meshes; belongs to one thread at a time.
+// Collects meshes and spheres; belongs to one thread at a time.
 typedef struct GnomonSceneBuilder GnomonSceneBuilder;
 
 // Told the share of a build that is done, in [0, 1] and never falling, and `progress_user`. Returning false cancels
@@ -206,6 +206,24 @@ typedef struct GnomonTriangles {
     size_t triangle_count;
 } GnomonTriangles;
 
+// Spheres in the caller's memory, which `gnomon_scene_builder_add_spheres` copies.
+//
+// No alignment is asked for, and nothing is read beyond the last byte of the last centre and of the last radius. For
+// spheres of four floats each (x, y, z, radius) let `centres` point to the first x, `radii` to the first radius, and both
+// strides be 16.
+typedef struct GnomonSpheres {
+    // Three floats (x, y, z) at the start of each stride; may be null without spheres.
+    const float *centres;
+    // Bytes from one centre to the next, at least 12; 0 means 12.
+    size_t centre_stride;
+    // A float at the start of each stride, not below 0; a sphere of radius 0 is never hit. May be null without spheres.
+    const float *radii;
+    // Bytes from one radius to the next, at least 4; 0 means 4.
+    size_t radius_stride;
+    // How many there are; their place in the order is their `primitive_id`. May be 0.
+    size_t sphere_count;
+} GnomonSpheres;
+
 // What a scene is made of. Later versions add fields at the end.
 typedef struct GnomonSceneStats {
     // Triangles that were added, without the skipped ones.
@@ -214,10 +232,10 @@ typedef struct GnomonSceneStats {
     uint64_t node_count;
     // Nodes without children.
     uint64_t leaf_count;
-    // Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a BVH cannot
+    // Triangles and spheres stored in leaves: not those of zero area or radius, which nothing hits, nor copies (equal to the bit) that a BVH cannot
     // tell apart.
     uint64_t reference_count;
-    // Triangles left out by `GNOMON_INVALID_SKIP`.
+    // Triangles and spheres left out by `GNOMON_INVALID_SKIP`.
     uint64_t skipped_count;
     // Nodes on the longest way from the root to a leaf, both counted; 0 without nodes.
     uint32_t depth;
@@ -231,15 +249,18 @@ typedef struct GnomonSceneStats {
     uint64_t bytes;
     // Of these, for nodes.
     uint64_t node_bytes;
-    // Of these, for triangles.
+    // Of these, for triangles and spheres.
     uint64_t leaf_bytes;
     // The most that the build held at a time, the scene among it, the builder's copy of the meshes not.
     uint64_t peak_build_bytes;
     // Wall-clock time of the build.
     double build_seconds;
     // Expected cost of a random ray that meets the scene's box, in triangle tests (MacDonald and Booth 1990,
-    // "Heuristics for ray tracing using space subdivision"); NaN where it has no meaning.
+    // "Heuristics for ray tracing using space subdivision"); NaN where it has no meaning. Triangles and spheres have a
+    // structure each: the sum of both.
     double sah_cost;
+    // Spheres that were added, without the skipped ones.
+    uint64_t sphere_count;
 } GnomonSceneStats;
 
 // `origin + t * direction` for `t` in the closed interval `[t_min, t_max]`. 32 bytes.
@@ -263,15 +284,16 @@ typedef struct GnomonRay {
 typedef struct GnomonHit {
     // In lengths of the ray's direction; `INFINITY` for a miss.
     float t;
-    // The hit point is `(1 - u - v) * p0 + u * p1 + v * p2` of the triangle's vertices; 0 for a miss.
+    // The hit point is `(1 - u - v) * p0 + u * p1 + v * p2` of the triangle's vertices; 0 for a sphere and for a miss.
     float u;
     // See `u`.
     float v;
-    // `(p1 - p0) x (p2 - p0)`, not normalised (Embree's `Ng`), each component rounded once from double; 0 for a miss.
+    // `(p1 - p0) x (p2 - p0)`, not normalised (Embree's `Ng`), each component rounded once from double; of a sphere from
+    // the centre to the hit, as long as the radius; 0 for a miss.
     float normal[3];
-    // The triangle's index within its geometry; `GNOMON_INVALID_ID` for a miss.
+    // The triangle's or sphere's index within its geometry; `GNOMON_INVALID_ID` for a miss.
     uint32_t primitive_id;
-    // What `gnomon_scene_builder_add_triangles` gave; `GNOMON_INVALID_ID` for a miss.
+    // What `gnomon_scene_builder_add_triangles` or `_add_spheres` gave; `GNOMON_INVALID_ID` for a miss.
     uint32_t geometry_id;
     // `GNOMON_INVALID_ID` where no instance is involved.
     uint32_t instance_id;
@@ -287,7 +309,7 @@ typedef struct GnomonRayCounts {
     uint32_t nodes_visited;
     // Cells that the ray was led through; 0 in structures without cells.
     uint32_t cells_stepped;
-    // Triangles of the leaves that were tested, each for itself or eight at once; without a structure, all.
+    // Triangles and spheres of the leaves that were tested, each for itself or eight at once; without a structure, all.
     uint32_t primitives_tested;
 } GnomonRayCounts;
 
@@ -314,7 +336,7 @@ void gnomon_build_options_init(struct GnomonBuildOptions *options_out);
 // Fills in the defaults. A null pointer is an error that `gnomon_last_error` tells.
 void gnomon_query_options_init(struct GnomonQueryOptions *options_out);
 
-// A builder without meshes, to be freed with `gnomon_scene_builder_free`. NULL if memory ran out.
+// An empty builder, to be freed with `gnomon_scene_builder_free`. NULL if memory ran out.
 struct GnomonSceneBuilder *gnomon_scene_builder_new(void);
 
 // Copies a mesh into the builder; the caller's arrays may go afterwards.
@@ -329,18 +351,36 @@ GnomonStatus gnomon_scene_builder_add_triangles(struct GnomonSceneBuilder *build
                                                 const struct GnomonTriangles *triangles,
                                                 uint32_t *geometry_id_out);
 
+// Copies spheres into the builder; the caller's arrays may go afterwards.
+//
+// `geometry_id_out` gets their id, from the same count as those of meshes; it may be NULL. Spheres are surfaces: a ray
+// from inside hits the far side. Hits are decided exactly, in every precision; `t` is within 0.51 ulp; `u` and `v` are 0; the
+// normal points from the centre to the hit and is as long as the radius. Centres and radii are not looked at before the
+// build, which decides by `invalid_triangles` about those that are not finite, and about radii below 0. A sphere of
+// radius 0 is valid and never hit. A scene without spheres pays nothing for them.
+//
+// Source: Haines, Guenther, Akenine-Moeller 2019, "Precision improvements for ray/sphere intersection", Ray Tracing Gems,
+// chapter 7.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, a stride that is too small, or a count that no memory can
+// hold; `GNOMON_ERROR_OUT_OF_MEMORY`. On an error the builder is as it was.
+GnomonStatus gnomon_scene_builder_add_spheres(struct GnomonSceneBuilder *builder,
+                                              const struct GnomonSpheres *spheres,
+                                              uint32_t *geometry_id_out);
+
 // Frees a builder; scenes built from it stay. NULL is fine.
 void gnomon_scene_builder_free(struct GnomonSceneBuilder *builder);
 
-// Builds a scene from all meshes of a builder; the builder stays as it is and may build again. Without any mesh the
-// scene is empty: every ray misses.
+// Builds a scene from all meshes and spheres of a builder; the builder stays as it is and may build again. Without any
+// the scene is empty: every ray misses.
 //
 // `options` may be NULL for the defaults. `scene_out` gets the scene, to be freed with `gnomon_scene_free`; it is
 // not touched on an error. Threads: see `thread_count`. Other threads may build other scenes, and query this
 // builder's earlier ones, meanwhile.
 //
 // Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that
-// is not finite (unless it is to be skipped; the message names the geometry, the triangle and the vertex);
+// is not finite (unless it is to be skipped; the message names the geometry, the triangle and the vertex), or such a
+// sphere;
 // `GNOMON_ERROR_UNSUPPORTED`; `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
 //
 // # Safety `builder` is null or from `gnomon_scene_builder_new`, and no other thread changes it; `options` is null
@@ -352,7 +392,7 @@ GnomonStatus gnomon_scene_build(const struct GnomonSceneBuilder *builder,
 // Frees a scene. NULL is fine.
 void gnomon_scene_free(struct GnomonScene *scene);
 
-// The box of all triangles that were not skipped, those of zero area among them. Without any, lower is `INFINITY`
+// The box of all triangles and spheres that were not skipped, those of zero area among them; a sphere's rounded outward. Without any, lower is `INFINITY`
 // and upper `-INFINITY`.
 //
 // `lower_out` and `upper_out` get three floats each (x, y, z), exact. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a

@@ -231,10 +231,10 @@ fn counts_are_within_what_the_structure_has() {
             let stats = scene.stats();
             let inner_node_count = stats.node_count - stats.leaf_count;
             for ray in rays_for(&mesh, &mut Rng::new(19)) {
-                let (hit, counts) = scene.intersect_counted(ray);
+                let (hit, counts) = scene.intersect_counted(&ray);
                 let (nodes, primitives) = (u64::from(counts.nodes_visited), u64::from(counts.primitives_tested));
                 let what = format!("{} {variant:?}: {counts:?}; {}", mesh.name, hexadecimal(&ray));
-                assert_eq!(counts, scene.intersect_counted(ray).1, "{what}");
+                assert_eq!(counts, scene.intersect_counted(&ray).1, "{what}");
                 assert_eq!(counts.cells_stepped, 0, "{what}");
                 assert!(nodes <= inner_node_count && primitives <= stats.reference_count, "{what}");
                 assert!(primitives >= u64::from(hit.is_hit()), "{what}");

@@ -2,19 +2,19 @@
 
 use super::brute_force::BruteForce;
 use super::bvh::{BinnedSah, Bvh, Median};
-use super::reference::{Reference, TriangleSource, gather};
+use super::reference::{PrimitiveSource, Reference, gather};
 use super::stats::Shape;
-use super::{BuildContext, BuildFailure, Compact, Quality, Structure, WideBvh};
-use crate::geometry::{Aabb, Triangle};
+use super::{BuildContext, BuildFailure, Primitive, Quality, Structure, WideBvh};
+use crate::geometry::Aabb;
 
-pub(crate) enum AnyAccel {
-    BruteForce(BruteForce<Triangle>),
-    Bvh(Bvh<Triangle>),
-    WideBvh(WideBvh),
-    CompactWideBvh(WideBvh<Compact>),
+pub(crate) enum AnyAccel<T: Primitive> {
+    BruteForce(BruteForce<T>),
+    Bvh(Bvh<T>),
+    WideBvh(WideBvh<T::Leaves>),
+    CompactWideBvh(WideBvh<T::CompactLeaves>),
 }
 
-impl AnyAccel {
+impl<T: Primitive> AnyAccel<T> {
     pub(crate) fn shape(&self) -> Shape {
         match self {
             Self::BruteForce(brute_force) => brute_force.shape(),
@@ -27,11 +27,11 @@ impl AnyAccel {
 
 /// What `Auto` stands for. On random triangles the binary BVH takes 1.51, 1.28 and 1.12 times as long as brute force at 8, 16
 /// and 24 triangles; where they overlap less it catches up earlier.
-pub(crate) fn choose(asked: Structure, triangle_count: usize) -> Structure {
+pub(crate) fn choose(asked: Structure, primitive_count: usize) -> Structure {
     const MOST_FOR_BRUTE_FORCE: usize = 16;
     match asked {
-        _ if triangle_count == 0 => Structure::BruteForce,
-        Structure::Auto if triangle_count <= MOST_FOR_BRUTE_FORCE => Structure::BruteForce,
+        _ if primitive_count == 0 => Structure::BruteForce,
+        Structure::Auto if primitive_count <= MOST_FOR_BRUTE_FORCE => Structure::BruteForce,
         Structure::Auto => Structure::WideBvh,
         other => other,
     }
@@ -49,15 +49,15 @@ pub(crate) fn unsupported(structure: Structure) -> Option<&'static str> {
 }
 
 /// Builds what [`choose`] made of a choice that is not [`unsupported`]. Only the wide BVH can be compact.
-pub(crate) fn build(
+pub(crate) fn build<S: PrimitiveSource>(
     structure: Structure,
     quality: Quality,
     is_compact: bool,
     references: Vec<Reference>,
     bounds: Aabb,
-    source: &impl TriangleSource,
+    source: &S,
     context: &BuildContext,
-) -> Result<AnyAccel, BuildFailure> {
+) -> Result<AnyAccel<S::Primitive>, BuildFailure> {
     match (structure, quality) {
         (Structure::BruteForce, _) => {
             let primitives = gather(source, &references, context)?;

@@ -36,7 +36,7 @@ impl<T: Primitive> Walk for BruteForce<T> {
         self.primitives.is_empty()
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
         tally.test_primitives(self.primitives.len());
         let mut best = ClosestHit::none(ray);

@@ -1,6 +1,6 @@
 //! What queries look for, the order in which hits win, and a leaf tested primitive by primitive.
 
-use super::primitive::Primitive;
+use super::primitive::{Primitive, Surface, SurfacePoint};
 use super::tally::{RayCounts, Tally};
 use crate::geometry::{INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit};
 
@@ -45,6 +45,15 @@ pub(crate) struct ClosestHit<T = Triangle> {
     pub(crate) primitive: T,
 }
 
+impl<T: Surface> ClosestHit<T> {
+    /// For those who do not know what was hit.
+    pub(crate) fn on_any_surface(self) -> ClosestHit<SurfacePoint> {
+        let (geometry_id, primitive_id) = self.primitive.ids();
+        let primitive = SurfacePoint { geometry_id, primitive_id, normal: self.primitive.normal() };
+        ClosestHit { t: self.t, u: self.u, v: self.v, primitive }
+    }
+}
+
 impl<T: Primitive> ClosestHit<T> {
     /// For a query that asks for no more than whether there is a hit.
     pub(crate) const UNSPECIFIED: Self = Self { t: f32::NAN, u: f32::NAN, v: f32::NAN, primitive: T::NONE };
@@ -52,6 +61,12 @@ impl<T: Primitive> ClosestHit<T> {
     /// Nothing yet: whatever lies in the interval is better, a hit at `t_max` itself too.
     pub(crate) fn none(ray: &Ray) -> Self {
         Self { t: ray.t_max, u: 0.0, v: 0.0, primitive: T::NONE }
+    }
+
+    /// With what there is to tell of the hit.
+    #[inline(always)]
+    pub(crate) fn on_surface(self, ray: &Ray) -> ClosestHit<T::Surface> {
+        ClosestHit { t: self.t, u: self.u, v: self.v, primitive: self.primitive.surface(ray, self.t) }
     }
 
     pub(crate) fn found(self) -> Option<Self> {

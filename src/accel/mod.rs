@@ -15,13 +15,15 @@ mod wide_bvh;
 pub(crate) use any_accel::{AnyAccel, build, choose, unsupported};
 pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
 pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Counted, Query};
-pub(crate) use primitive::{Primitive, Surface};
+pub(crate) use primitive::{Primitive, Surface, SurfacePoint};
 pub(crate) use reference::{Bounds8, PrimitiveSource, Reference};
+pub(crate) use stats::Shape;
 pub use stats::{Precision, Quality, Stats, Structure};
 pub use tally::RayCounts;
-pub(crate) use wide_bvh::{Compact, Vectorize, WideBvh};
+pub(crate) use tally::Tally;
+pub(crate) use wide_bvh::{LeafForm, WideBvh};
 
-use crate::geometry::{PrecisionMode, Ray, Triangle};
+use crate::geometry::{PrecisionMode, Ray};
 
 /// A structure whose rays go one by one through scalar code.
 pub(crate) trait Walk {
@@ -33,24 +35,25 @@ pub(crate) trait Walk {
         false
     }
 
-    /// The closest hit of a valid ray, or any. Must be `#[inline(always)]`.
+    /// The closest hit of a valid ray, or any. Must be `#[inline(never)]`, so that it is compiled once for all callers.
     fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<Self::Primitive>>;
 }
 
-impl<W: Walk<Primitive = Triangle>> Accel for W {
-    type Found = Triangle;
+impl<W: Walk> Accel for W {
+    type Found = <W::Primitive as Primitive>::Surface;
 
     #[inline(always)]
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
         ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
+        then: impl FnOnce(Option<ClosestHit<Self::Found>>, Q::Tally) -> R,
     ) -> R {
         let mut tally = Q::Tally::default();
         if self.is_empty() {
             return then(None, tally);
         }
-        then(Ray::valid(ray).and_then(|ray| self.walk::<Q, P>(&ray, &mut tally)), tally)
+        let found = Ray::valid(ray).and_then(|ray| Some(self.walk::<Q, P>(&ray, &mut tally)?.on_surface(&ray)));
+        then(found, tally)
     }
 }
 
@@ -70,10 +73,15 @@ pub(crate) trait Accel {
         then: impl FnOnce(Option<ClosestHit<Self::Found>>, Q::Tally) -> R,
     ) -> R;
 
+    /// As [`Accel::query`], for all who need not have the ray made and its hit used inside: compiled once for them.
+    fn find<Q: Query, P: PrecisionMode>(&self, ray: Ray) -> (Option<ClosestHit<Self::Found>>, Q::Tally) {
+        self.query::<Q, P, _>(ray, |found, tally| (found, tally))
+    }
+
     /// As [`Accel::query`] for the rays of each run, with the same answers in the same places.
     fn query_runs<'r, Q, P, R, T>(
         &self,
-        mut next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+        next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
         answer: impl Fn(&mut T, Option<ClosestHit<Self::Found>>),
     ) where
         Q: Query,
@@ -82,10 +90,26 @@ pub(crate) trait Accel {
         R: 'r,
         T: 'r,
     {
-        while let Some((rays, places)) = next_run() {
-            for (ray, place) in rays.iter().zip(places) {
-                self.query::<Q, P, ()>(ray, |found, _| answer(place, found));
-            }
+        query_one_by_one::<Self, Q, P, R, T>(self, next_run, answer);
+    }
+}
+
+/// See [`Accel::query_runs`].
+fn query_one_by_one<'r, A, Q, P, R, T>(
+    accel: &A,
+    mut next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+    answer: impl Fn(&mut T, Option<ClosestHit<A::Found>>),
+) where
+    A: Accel + ?Sized,
+    Q: Query,
+    P: PrecisionMode,
+    for<'a> &'a R: Into<Ray>,
+    R: 'r,
+    T: 'r,
+{
+    while let Some((rays, places)) = next_run() {
+        for (ray, place) in rays.iter().zip(places) {
+            answer(place, accel.find::<Q, P>(ray.into()).0);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::wide_bvh::{ByAxis, Compact, LeafForm, Spheres};
 use crate::geometry::{
     Aabb, INVALID_ID, Interval, PrecisionMode, Ray, Sphere, SphereRay, Triangle, TriangleHit, TriangleRay,
 };
@@ -13,6 +14,26 @@ pub(crate) trait Surface {
 
     /// At the hit.
     fn normal(&self) -> Vec3;
+}
+
+/// A surface where a ray hit it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfacePoint {
+    pub(crate) geometry_id: u32,
+    pub(crate) primitive_id: u32,
+    pub(crate) normal: Vec3,
+}
+
+impl Surface for SurfacePoint {
+    #[inline(always)]
+    fn ids(&self) -> (u32, u32) {
+        (self.geometry_id, self.primitive_id)
+    }
+
+    #[inline(always)]
+    fn normal(&self) -> Vec3 {
+        self.normal
+    }
 }
 
 impl Surface for Triangle {
@@ -31,6 +52,11 @@ impl Surface for Triangle {
 pub(crate) trait Primitive: Copy + Send + Sync + 'static {
     /// A ray made ready for these.
     type Ray: Copy;
+    /// What its hits tell.
+    type Surface: Surface;
+    /// How the wide BVH stores it, and how where memory counts.
+    type Leaves: LeafForm<Primitive = Self>;
+    type CompactLeaves: LeafForm<Primitive = Self>;
 
     /// None at all: what a search begins with.
     const NONE: Self;
@@ -40,6 +66,9 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
 
     /// The first hit in the closed interval.
     fn hit<P: PrecisionMode>(&self, ray: &Self::Ray, interval: Interval) -> Option<TriangleHit>;
+
+    /// What there is to tell of the hit at `t`.
+    fn surface(&self, ray: &Ray, t: f32) -> Self::Surface;
 
     /// `(geometry_id, primitive_id)`, the order in which equal hits win.
     fn ids(&self) -> (u32, u32);
@@ -59,6 +88,9 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
 
 impl Primitive for Triangle {
     type Ray = TriangleRay;
+    type Surface = Self;
+    type Leaves = ByAxis;
+    type CompactLeaves = Compact;
     type Shape = [[u32; 3]; 3];
 
     const NONE: Self = Self { axes: [[f32::NAN; 3]; 3], geometry_id: INVALID_ID, primitive_id: INVALID_ID };
@@ -71,6 +103,11 @@ impl Primitive for Triangle {
     #[inline(always)]
     fn hit<P: PrecisionMode>(&self, ray: &TriangleRay, interval: Interval) -> Option<TriangleHit> {
         ray.hit::<P>(self, interval)
+    }
+
+    #[inline(always)]
+    fn surface(&self, _ray: &Ray, _t: f32) -> Self {
+        *self
     }
 
     #[inline(always)]
@@ -94,6 +131,9 @@ impl Primitive for Triangle {
 
 impl Primitive for Sphere {
     type Ray = SphereRay;
+    type Surface = SurfacePoint;
+    type Leaves = Spheres;
+    type CompactLeaves = Spheres;
     type Shape = [u32; 4];
 
     const NONE: Self =
@@ -107,6 +147,11 @@ impl Primitive for Sphere {
     #[inline(always)]
     fn hit<P: PrecisionMode>(&self, ray: &SphereRay, interval: Interval) -> Option<TriangleHit> {
         Sphere::hit(self, ray, interval)
+    }
+
+    #[inline(always)]
+    fn surface(&self, ray: &Ray, t: f32) -> SurfacePoint {
+        SurfacePoint { geometry_id: self.geometry_id, primitive_id: self.primitive_id, normal: self.normal_at(ray, t) }
     }
 
     #[inline(always)]

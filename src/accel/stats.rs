@@ -55,10 +55,10 @@ pub struct Stats {
     pub node_count: u64,
     /// Nodes without children.
     pub leaf_count: u64,
-    /// Triangles stored: not those of zero area, which nothing hits, nor all of those that are the same to the bit and
+    /// Triangles and spheres stored: not those of zero area or radius, which nothing hits, nor all of those that are the same to the bit and
     /// that a BVH cannot tell apart.
     pub reference_count: u64,
-    /// Triangles left out because a coordinate is not finite.
+    /// Triangles and spheres left out because they are invalid.
     pub skipped_count: u64,
     /// Nodes on the longest way from the root to a leaf, both counted; 0 without nodes.
     pub depth: u32,
@@ -78,8 +78,11 @@ pub struct Stats {
     pub peak_build_bytes: u64,
     /// Wall-clock time.
     pub build_seconds: f64,
-    /// Expected cost of a random ray, in triangle tests (MacDonald and Booth 1990); NaN where it has no meaning.
+    /// Expected cost of a random ray, in triangle tests (MacDonald and Booth 1990); NaN where it has no meaning. With
+    /// triangles and spheres the sum of both structures'.
     pub sah_cost: f64,
+    /// Spheres that were added, without the skipped ones.
+    pub sphere_count: u64,
 }
 
 /// What a structure tells about itself; the scene knows the rest.

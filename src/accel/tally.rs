@@ -8,7 +8,7 @@ pub struct RayCounts {
     pub nodes_visited: u32,
     /// Cells that the ray was led through; 0 in structures without cells.
     pub cells_stepped: u32,
-    /// Triangles of the leaves that were tested, each for itself or eight at once; without a structure, all.
+    /// Triangles and spheres of the leaves that were tested, each for itself or eight at once; without a structure, all.
     pub primitives_tested: u32,
 }
 
@@ -17,6 +17,8 @@ pub(crate) trait Tally: Copy + Default {
     fn visit_node(&mut self);
     fn step_cell(&mut self);
     fn test_primitives(&mut self, count: usize);
+    /// What one query did after another.
+    fn plus(self, other: Self) -> Self;
 }
 
 /// Nothing is counted, and nothing compiled.
@@ -29,6 +31,9 @@ impl Tally for () {
 
     #[inline(always)]
     fn test_primitives(&mut self, _count: usize) {}
+
+    #[inline(always)]
+    fn plus(self, _other: Self) -> Self {}
 }
 
 impl Tally for RayCounts {
@@ -45,6 +50,14 @@ impl Tally for RayCounts {
     #[inline(always)]
     fn test_primitives(&mut self, count: usize) {
         self.primitives_tested = self.primitives_tested.saturating_add(u32::try_from(count).unwrap_or(u32::MAX));
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            nodes_visited: self.nodes_visited.saturating_add(other.nodes_visited),
+            cells_stepped: self.cells_stepped.saturating_add(other.cells_stepped),
+            primitives_tested: self.primitives_tested.saturating_add(other.primitives_tested),
+        }
     }
 }
 

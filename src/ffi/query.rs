@@ -7,6 +7,7 @@ use super::pointers::{Null, output, output_slice, required, slice};
 use super::scene::GnomonScene;
 use super::status::{Failure, GnomonStatus, guard, panicked, report};
 use super::types::{GnomonHit, GnomonRay, GnomonRayCounts};
+use crate::geometry::{Hit, Ray};
 
 /// The closest hit of a ray: true if there is one, and `hit_out` gets it; false for a miss, and `hit_out` says so.
 ///
@@ -61,7 +62,7 @@ pub unsafe extern "C-unwind" fn gnomon_intersect_counted(
         let hit_out = unsafe { output(hit_out, "hit_out") }?;
         // SAFETY: the caller's promise.
         let counts_out = unsafe { output(counts_out, "counts_out") }?;
-        let (hit, counts) = scene.0.intersect_counted(ray);
+        let (hit, counts) = scene.0.intersect_counted(&ray.into());
         hit_out.write(hit.into());
         counts_out.write(counts.into());
         Ok(hit.is_hit())
@@ -82,7 +83,7 @@ pub unsafe extern "C-unwind" fn gnomon_occluded(scene: *const GnomonScene, ray: 
         let scene = unsafe { required(scene, "scene") }?;
         // SAFETY: the caller's promise.
         let ray = unsafe { required(ray, "ray") }?;
-        Ok(scene.0.occluded(ray))
+        Ok(scene.0.occluded_by(ray))
     })
 }
 
@@ -107,10 +108,10 @@ pub unsafe extern "C-unwind" fn gnomon_intersect_n(
     guard(|| {
         // SAFETY: the caller's promise.
         let scene = unsafe { required(scene, "scene") }?;
-        // SAFETY: the caller's promise.
-        let rays = unsafe { slice(rays, count, "rays") }?;
-        // SAFETY: the caller's promise.
-        let hits_out = unsafe { output_slice(hits_out, count, "hits_out") }?;
+        // SAFETY: the caller's promise; a Ray has a GnomonRay's layout.
+        let rays = unsafe { slice(rays.cast::<Ray>(), count, "rays") }?;
+        // SAFETY: the caller's promise; a Hit has a GnomonHit's layout.
+        let hits_out = unsafe { output_slice(hits_out.cast::<Hit>(), count, "hits_out") }?;
         // SAFETY: the caller's promise.
         let options = unsafe { GnomonQueryOptions::read(options) }?;
         scene.0.intersect_n(rays, hits_out, options.thread_count);
@@ -136,10 +137,10 @@ pub unsafe extern "C-unwind" fn gnomon_occluded_n(
     guard(|| {
         // SAFETY: the caller's promise.
         let scene = unsafe { required(scene, "scene") }?;
-        // SAFETY: the caller's promise.
-        let rays = unsafe { slice(rays, count, "rays") }?;
-        // SAFETY: the caller's promise.
-        let occluded_out = unsafe { output_slice(occluded_out, count, "occluded_out") }?;
+        // SAFETY: the caller's promise; a Ray has a GnomonRay's layout.
+        let rays = unsafe { slice(rays.cast::<Ray>(), count, "rays") }?;
+        // SAFETY: the caller's promise; a bool is a byte, 0 or 1.
+        let occluded_out = unsafe { output_slice(occluded_out.cast::<bool>(), count, "occluded_out") }?;
         // SAFETY: the caller's promise.
         let options = unsafe { GnomonQueryOptions::read(options) }?;
         scene.0.occluded_n(rays, occluded_out, options.thread_count);

@@ -10,15 +10,16 @@ use crate::scene::Scene;
 /// An immutable scene; any number of threads may query it at a time.
 pub struct GnomonScene(pub(super) Scene);
 
-/// Builds a scene from all meshes of a builder; the builder stays as it is and may build again. Without any mesh the
-/// scene is empty: every ray misses.
+/// Builds a scene from all meshes and spheres of a builder; the builder stays as it is and may build again. Without any
+/// the scene is empty: every ray misses.
 ///
 /// `options` may be NULL for the defaults. `scene_out` gets the scene, to be freed with `gnomon_scene_free`; it is
 /// not touched on an error. Threads: see `thread_count`. Other threads may build other scenes, and query this
 /// builder's earlier ones, meanwhile.
 ///
 /// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that
-/// is not finite (unless it is to be skipped; the message names the geometry, the triangle and the vertex);
+/// is not finite (unless it is to be skipped; the message names the geometry, the triangle and the vertex), or such a
+/// sphere;
 /// `GNOMON_ERROR_UNSUPPORTED`; `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
 ///
 /// # Safety `builder` is null or from `gnomon_scene_builder_new`, and no other thread changes it; `options` is null
@@ -65,7 +66,7 @@ pub unsafe extern "C-unwind" fn gnomon_scene_free(scene: *mut GnomonScene) {
     });
 }
 
-/// The box of all triangles that were not skipped, those of zero area among them. Without any, lower is `INFINITY`
+/// The box of all triangles and spheres that were not skipped, those of zero area among them; a sphere's rounded outward. Without any, lower is `INFINITY`
 /// and upper `-INFINITY`.
 ///
 /// `lower_out` and `upper_out` get three floats each (x, y, z), exact. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a
@@ -147,6 +148,7 @@ impl From<&crate::accel::Stats> for GnomonSceneStats {
             peak_build_bytes: stats.peak_build_bytes,
             build_seconds: stats.build_seconds,
             sah_cost: stats.sah_cost,
+            sphere_count: stats.sphere_count,
         }
     }
 }

@@ -45,7 +45,8 @@ impl From<BuildError> for Failure {
             | BuildError::TooFewVertices { .. }
             | BuildError::TooMany { .. }
             | BuildError::TooManyInScene { .. }
-            | BuildError::NotFinite { .. } => GNOMON_ERROR_INVALID_ARGUMENT,
+            | BuildError::NotFinite { .. }
+            | BuildError::InvalidSphere { .. } => GNOMON_ERROR_INVALID_ARGUMENT,
             BuildError::Unsupported(_) => GNOMON_ERROR_UNSUPPORTED,
             BuildError::Cancelled => GNOMON_ERROR_CANCELLED,
             BuildError::OverMemoryLimit { .. } | BuildError::OutOfMemory { .. } => GNOMON_ERROR_OUT_OF_MEMORY,

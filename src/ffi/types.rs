@@ -1,4 +1,4 @@
-//! Rays, hits, meshes, and what a scene tells about itself, as C sees them.
+//! Rays, hits, meshes, spheres, and what a scene tells about itself, as C sees them.
 
 use std::ffi::c_void;
 use std::mem::{MaybeUninit, offset_of};
@@ -41,15 +41,16 @@ pub struct GnomonRay {
 pub struct GnomonHit {
     /// In lengths of the ray's direction; `INFINITY` for a miss.
     pub t: f32,
-    /// The hit point is `(1 - u - v) * p0 + u * p1 + v * p2` of the triangle's vertices; 0 for a miss.
+    /// The hit point is `(1 - u - v) * p0 + u * p1 + v * p2` of the triangle's vertices; 0 for a sphere and for a miss.
     pub u: f32,
     /// See `u`.
     pub v: f32,
-    /// `(p1 - p0) x (p2 - p0)`, not normalised (Embree's `Ng`), each component rounded once from double; 0 for a miss.
+    /// `(p1 - p0) x (p2 - p0)`, not normalised (Embree's `Ng`), each component rounded once from double; of a sphere from
+    /// the centre to the hit, as long as the radius; 0 for a miss.
     pub normal: [f32; 3],
-    /// The triangle's index within its geometry; `GNOMON_INVALID_ID` for a miss.
+    /// The triangle's or sphere's index within its geometry; `GNOMON_INVALID_ID` for a miss.
     pub primitive_id: u32,
-    /// What `gnomon_scene_builder_add_triangles` gave; `GNOMON_INVALID_ID` for a miss.
+    /// What `gnomon_scene_builder_add_triangles` or `_add_spheres` gave; `GNOMON_INVALID_ID` for a miss.
     pub geometry_id: u32,
     /// `GNOMON_INVALID_ID` where no instance is involved.
     pub instance_id: u32,
@@ -67,7 +68,7 @@ pub struct GnomonRayCounts {
     pub nodes_visited: u32,
     /// Cells that the ray was led through; 0 in structures without cells.
     pub cells_stepped: u32,
-    /// Triangles of the leaves that were tested, each for itself or eight at once; without a structure, all.
+    /// Triangles and spheres of the leaves that were tested, each for itself or eight at once; without a structure, all.
     pub primitives_tested: u32,
 }
 
@@ -94,6 +95,26 @@ pub struct GnomonTriangles {
     pub triangle_count: usize,
 }
 
+/// Spheres in the caller's memory, which `gnomon_scene_builder_add_spheres` copies.
+///
+/// No alignment is asked for, and nothing is read beyond the last byte of the last centre and of the last radius. For
+/// spheres of four floats each (x, y, z, radius) let `centres` point to the first x, `radii` to the first radius, and both
+/// strides be 16.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct GnomonSpheres {
+    /// Three floats (x, y, z) at the start of each stride; may be null without spheres.
+    pub centres: *const f32,
+    /// Bytes from one centre to the next, at least 12; 0 means 12.
+    pub centre_stride: usize,
+    /// A float at the start of each stride, not below 0; a sphere of radius 0 is never hit. May be null without spheres.
+    pub radii: *const f32,
+    /// Bytes from one radius to the next, at least 4; 0 means 4.
+    pub radius_stride: usize,
+    /// How many there are; their place in the order is their `primitive_id`. May be 0.
+    pub sphere_count: usize,
+}
+
 /// What a scene is made of. Later versions add fields at the end.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -104,10 +125,10 @@ pub struct GnomonSceneStats {
     pub node_count: u64,
     /// Nodes without children.
     pub leaf_count: u64,
-    /// Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a BVH cannot
+    /// Triangles and spheres stored in leaves: not those of zero area or radius, which nothing hits, nor copies (equal to the bit) that a BVH cannot
     /// tell apart.
     pub reference_count: u64,
-    /// Triangles left out by `GNOMON_INVALID_SKIP`.
+    /// Triangles and spheres left out by `GNOMON_INVALID_SKIP`.
     pub skipped_count: u64,
     /// Nodes on the longest way from the root to a leaf, both counted; 0 without nodes.
     pub depth: u32,
@@ -121,15 +142,18 @@ pub struct GnomonSceneStats {
     pub bytes: u64,
     /// Of these, for nodes.
     pub node_bytes: u64,
-    /// Of these, for triangles.
+    /// Of these, for triangles and spheres.
     pub leaf_bytes: u64,
     /// The most that the build held at a time, the scene among it, the builder's copy of the meshes not.
     pub peak_build_bytes: u64,
     /// Wall-clock time of the build.
     pub build_seconds: f64,
     /// Expected cost of a random ray that meets the scene's box, in triangle tests (MacDonald and Booth 1990,
-    /// "Heuristics for ray tracing using space subdivision"); NaN where it has no meaning.
+    /// "Heuristics for ray tracing using space subdivision"); NaN where it has no meaning. Triangles and spheres have a
+    /// structure each: the sum of both.
     pub sah_cost: f64,
+    /// Spheres that were added, without the skipped ones.
+    pub sphere_count: u64,
 }
 
 impl From<&GnomonRay> for Ray {
@@ -192,6 +216,23 @@ impl From<RayCounts> for GnomonRayCounts {
     }
 }
 
+// Batches take the ones for the others.
+const _: () = assert!(
+    size_of::<Ray>() == size_of::<GnomonRay>()
+        && align_of::<Ray>() == align_of::<GnomonRay>()
+        && offset_of!(Ray, t_min) == offset_of!(GnomonRay, t_min)
+        && offset_of!(Ray, direction) == offset_of!(GnomonRay, direction)
+        && offset_of!(Ray, t_max) == offset_of!(GnomonRay, t_max)
+);
+const _: () = assert!(
+    size_of::<Hit>() == size_of::<GnomonHit>()
+        && align_of::<Hit>() == align_of::<GnomonHit>()
+        && offset_of!(Hit, v) == offset_of!(GnomonHit, v)
+        && offset_of!(Hit, normal) == offset_of!(GnomonHit, normal)
+        && offset_of!(Hit, primitive_id) == offset_of!(GnomonHit, primitive_id)
+        && offset_of!(Hit, geometry_id) == offset_of!(GnomonHit, geometry_id)
+        && offset_of!(Hit, instance_id) == offset_of!(GnomonHit, instance_id)
+);
 const _: () = assert!(size_of::<GnomonRay>() == 32);
 const _: () = assert!(size_of::<GnomonHit>() == 36);
 const _: () = assert!(size_of::<GnomonRayCounts>() == 12);
@@ -199,9 +240,12 @@ const _: () = assert!(std::mem::offset_of!(GnomonRay, direction) == 16);
 const _: () = assert!(std::mem::offset_of!(GnomonHit, primitive_id) == 24);
 #[cfg(target_pointer_width = "64")]
 const _: () = assert!(size_of::<GnomonTriangles>() == 56 && std::mem::offset_of!(GnomonTriangles, index_stride) == 40);
+#[cfg(target_pointer_width = "64")]
+const _: () = assert!(size_of::<GnomonSpheres>() == 40 && std::mem::offset_of!(GnomonSpheres, radii) == 16);
 const _: () = assert!(
-    size_of::<GnomonSceneStats>() == 104
+    size_of::<GnomonSceneStats>() == 112
         && std::mem::offset_of!(GnomonSceneStats, depth) == 40
         && std::mem::offset_of!(GnomonSceneStats, sah_cost) == 96
+        && std::mem::offset_of!(GnomonSceneStats, sphere_count) == 104
 );
 const _: () = assert!(GNOMON_INVALID_ID == crate::geometry::INVALID_ID);

@@ -1,4 +1,4 @@
-//! Reading a caller's vertex and index buffers, byte by byte within their stated size: any alignment, any stride.
+//! Reading a caller's vertex, index and sphere buffers, byte by byte within their stated size: any alignment, any stride.
 
 /// Positions of `count` vertices: three native-endian `f32` at the start of each stride.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +97,36 @@ pub struct TriangleView<'a> {
     pub positions: PositionView<'a>,
     /// The triangles.
     pub indices: IndexView<'a>,
+}
+
+/// Spheres in the caller's memory.
+#[derive(Clone, Copy, Debug)]
+pub struct SphereView<'a> {
+    centres: PositionView<'a>,
+    radii: &'a [u8],
+    radius_stride: usize,
+}
+
+impl<'a> SphereView<'a> {
+    /// Bytes of one radius.
+    pub const RADIUS_BYTES: usize = 4;
+
+    /// As many radii as centres, a native-endian `f32` at the start of each stride. None where `radii` is not exactly what
+    /// [`span_bytes`] tells.
+    pub fn new(centres: PositionView<'a>, radii: &'a [u8], radius_stride: usize) -> Option<Self> {
+        let bytes = span_bytes(centres.count(), radius_stride, Self::RADIUS_BYTES);
+        (bytes == Some(radii.len())).then_some(Self { centres, radii, radius_stride })
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.centres.count()
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = ([f32; 3], f32)> {
+        let radius = |index: usize| f32::from_ne_bytes(read(self.radii, index * self.radius_stride));
+        self.centres.iter().enumerate().map(move |(index, centre)| (centre, radius(index)))
+    }
 }
 
 /// From the first byte of the first element to the last byte of the last one; `None` where that passes `isize::MAX`,

@@ -12,7 +12,7 @@ mod triangle_hit;
 pub use aabb::Aabb;
 pub(crate) use aabb::{ObliqueSlabs, SlabRay, band_distance};
 pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};
-pub use mesh_view::{IndexBytes, IndexView, PositionView, TriangleView, span_bytes};
+pub use mesh_view::{IndexBytes, IndexView, PositionView, SphereView, TriangleView, span_bytes};
 pub use ray::{Hit, INVALID_ID, Ray};
 pub(crate) use sphere::{Sphere, SphereRay};
 pub(crate) use triangle::Triangle;

@@ -7,6 +7,7 @@ pub const INVALID_ID: u32 = u32::MAX;
 
 /// `origin + t * direction` for `t` in `[t_min, t_max]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Ray {
     /// Where `t` is 0.
     pub origin: Vec3,
@@ -44,16 +45,18 @@ impl From<&Self> for Ray {
 
 /// The closest hit of a ray, or its absence.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Hit {
     /// Distance along the ray in lengths of its direction; `+inf` for a miss.
     pub t: f32,
-    /// Weight of the second vertex: the hit point is `(1 - u - v) * p0 + u * p1 + v * p2`.
+    /// Weight of the second vertex: the hit point is `(1 - u - v) * p0 + u * p1 + v * p2`. 0 for a sphere.
     pub u: f32,
-    /// Weight of the third vertex.
+    /// Weight of the third vertex. 0 for a sphere.
     pub v: f32,
-    /// `(p1 - p0) x (p2 - p0)`, not normalised; each component rounded once from `f64`.
+    /// `(p1 - p0) x (p2 - p0)`, not normalised; each component rounded once from `f64`. Of a sphere from the centre to the
+    /// hit.
     pub normal: Vec3,
-    /// The triangle's index within its geometry; [`INVALID_ID`] for a miss.
+    /// The triangle's or sphere's index within its geometry; [`INVALID_ID`] for a miss.
     pub primitive_id: u32,
     /// [`INVALID_ID`] for a miss.
     pub geometry_id: u32,

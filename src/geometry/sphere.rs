@@ -16,7 +16,7 @@ use crate::math::{DoubleDouble, Expansion};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sphere {
     pub(crate) centre: [f32; 3],
-    /// Above 0.
+    /// Above 0; nothing hits one of radius 0.
     pub(crate) radius: f32,
     pub(crate) geometry_id: u32,
     pub(crate) primitive_id: u32,
@@ -46,8 +46,9 @@ enum Roots {
 }
 
 impl Sphere {
-    pub(crate) fn is_finite(&self) -> bool {
-        self.centre.iter().all(|c| c.is_finite()) && self.radius.is_finite()
+    /// Whether everything is finite and the radius not below 0.
+    pub(crate) fn is_valid(&self) -> bool {
+        self.centre.iter().all(|c| c.is_finite()) && self.radius.is_finite() && self.radius >= 0.0
     }
 
     /// Rounded outward.

@@ -11,22 +11,12 @@ use crate::geometry::{Hit, PrecisionMode, Ray};
 impl Scene {
     /// As [`Scene::intersect`] for each ray, on at most `thread_count` threads: 0 for all, 1 for the calling one alone.
     /// `hits` has one place a ray; what it held is overwritten.
-    pub fn intersect_n<R, H>(&self, rays: &[R], hits: &mut [MaybeUninit<H>], thread_count: u32)
-    where
-        R: Sync,
-        for<'a> &'a R: Into<Ray>,
-        H: From<Hit> + Send,
-    {
+    pub fn intersect_n(&self, rays: &[Ray], hits: &mut [MaybeUninit<Hit>], thread_count: u32) {
         self.dispatch(Batch { question: ClosestOf, rays, answers: hits, thread_count });
     }
 
     /// As [`Scene::occluded`] for each ray; see [`Scene::intersect_n`].
-    pub fn occluded_n<R, O>(&self, rays: &[R], occluded: &mut [MaybeUninit<O>], thread_count: u32)
-    where
-        R: Sync,
-        for<'a> &'a R: Into<Ray>,
-        O: From<bool> + Send,
-    {
+    pub fn occluded_n(&self, rays: &[Ray], occluded: &mut [MaybeUninit<bool>], thread_count: u32) {
         self.dispatch(Batch { question: Occlusion, rays, answers: occluded, thread_count });
     }
 }

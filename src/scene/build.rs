@@ -1,12 +1,14 @@
-//! Building a scene: options checked, triangles gathered, one structure built.
+//! Building a scene: options checked, triangles and spheres gathered, a structure built for each.
 
 use std::sync::Arc;
 use std::time::Instant;
 
+use arrayvec::ArrayVec;
+
 use super::builder::Geometry;
-use super::flatten::{Flat, Meshes, flatten};
-use super::{BuildError, BuildOptions, Scene, threads};
-use crate::accel::{self, BuildContext, Precision, Stats, Structure, Watch};
+use super::flatten::{Balls, Flat, Meshes, flatten};
+use super::{BuildError, BuildOptions, Content, Scene, threads};
+use crate::accel::{self, AnyAccel, BuildContext, Precision, PrimitiveSource, Shape, Stats, Structure, Watch};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
@@ -34,29 +36,59 @@ fn build_with(
     context: &BuildContext,
 ) -> Result<Scene, BuildError> {
     let start = Instant::now();
-    let meshes = Meshes::new(geometries)?;
-    let Flat { references, bounds, skipped_count } = flatten(&meshes, options.invalid_triangles, context)?;
-    let structure = accel::choose(options.structure, references.len());
-    let accel = accel::build(structure, options.quality, options.is_compact, references, bounds, &meshes, context)?;
-    let shape = accel.shape();
+    let (meshes, balls) = (Meshes::new(geometries)?, Balls::new(geometries)?);
+    let of_meshes = flatten(&meshes, options.invalid_triangles, context)?;
+    let of_balls = balls.flatten(options.invalid_triangles, context)?;
+    let bounds = of_meshes.bounds.union(of_balls.bounds);
+    let (skipped_triangles, skipped_spheres) = (of_meshes.skipped_count, of_balls.skipped_count);
+    let (has_triangles, has_spheres) = (!of_meshes.references.is_empty(), !of_balls.references.is_empty());
+    let structure = accel::choose(options.structure, of_meshes.references.len() + of_balls.references.len());
+    let mut shapes = ArrayVec::<Shape, 2>::new();
+    let content = if has_spheres && has_triangles {
+        let triangles = build_part(structure, of_meshes, &meshes, options, context, &mut shapes)?;
+        let spheres = build_part(structure, of_balls, &balls, options, context, &mut shapes)?;
+        Content::Both(Box::new((triangles, spheres)))
+    } else if has_spheres {
+        Content::Spheres(build_part(structure, of_balls, &balls, options, context, &mut shapes)?)
+    } else {
+        Content::Triangles(build_part(structure, of_meshes, &meshes, options, context, &mut shapes)?)
+    };
+    let total = |of: fn(&Shape) -> usize| shapes.iter().map(of).sum::<usize>() as u64;
     // Only the wide BVH has kernels beyond the scalar one.
     let isa = if structure == Structure::WideBvh { options.isa } else { Isa::Scalar }.resolve();
+    let (node_bytes, leaf_bytes) = (total(|shape| shape.node_bytes), total(|shape| shape.leaf_bytes));
     let stats = Stats {
-        triangle_count: (meshes.triangle_count() - skipped_count) as u64,
-        node_count: shape.node_count as u64,
-        leaf_count: shape.leaf_count as u64,
-        reference_count: shape.reference_count as u64,
-        skipped_count: skipped_count as u64,
-        depth: shape.depth,
+        triangle_count: (meshes.triangle_count() - skipped_triangles) as u64,
+        node_count: total(|shape| shape.node_count),
+        leaf_count: total(|shape| shape.leaf_count),
+        reference_count: total(|shape| shape.reference_count),
+        skipped_count: (skipped_triangles + skipped_spheres) as u64,
+        depth: shapes.iter().map(|shape| shape.depth).max().unwrap_or(0),
         structure,
         precision: options.precision,
         isa: isa.into(),
-        bytes: (shape.node_bytes + shape.leaf_bytes + size_of::<Scene>()) as u64,
-        node_bytes: shape.node_bytes as u64,
-        leaf_bytes: shape.leaf_bytes as u64,
+        bytes: node_bytes + leaf_bytes + size_of::<Scene>() as u64,
+        node_bytes,
+        leaf_bytes,
         peak_build_bytes: context.peak_bytes() as u64,
         build_seconds: start.elapsed().as_secs_f64(),
-        sah_cost: shape.sah_cost,
+        sah_cost: shapes.iter().map(|shape| shape.sah_cost).sum(),
+        sphere_count: (balls.count() - skipped_spheres) as u64,
     };
-    Ok(Scene { accel, precision: options.precision, isa, bounds, stats })
+    Ok(Scene { content, precision: options.precision, isa, bounds, stats })
+}
+
+/// One kind's structure; its shape is appended to `shapes`.
+fn build_part<S: PrimitiveSource>(
+    structure: Structure,
+    flat: Flat,
+    source: &S,
+    options: &BuildOptions,
+    context: &BuildContext,
+    shapes: &mut ArrayVec<Shape, 2>,
+) -> Result<AnyAccel<S::Primitive>, BuildError> {
+    let Flat { references, bounds, .. } = flat;
+    let accel = accel::build(structure, options.quality, options.is_compact, references, bounds, source, context)?;
+    shapes.push(accel.shape());
+    Ok(accel)
 }

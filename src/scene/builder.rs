@@ -1,39 +1,55 @@
-//! Collects a caller's meshes, copied and with their indices checked.
+//! Collects a caller's meshes and spheres, copied and with their indices checked.
 
 use std::sync::Arc;
 
 use super::{BuildError, BuildOptions, Scene, build, watched_build};
 use crate::accel::Watch;
-use crate::geometry::{INVALID_ID, IndexView, TriangleView};
+use crate::geometry::{INVALID_ID, IndexView, SphereView, TriangleView};
+
+/// What one id stands for.
+pub(super) enum Geometry {
+    Mesh(Mesh),
+    /// Centres and radii, which may be anything.
+    Spheres(Vec<([f32; 3], f32)>),
+}
 
 /// A mesh as the builder keeps it: every index is in range. Coordinates may be anything.
-pub(super) struct Geometry {
+pub(super) struct Mesh {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// Meshes on their way to a [`Scene`]; can be built any number of times.
+/// Meshes and spheres on their way to a [`Scene`]; can be built any number of times.
 #[derive(Default)]
 pub struct SceneBuilder {
     geometries: Vec<Arc<Geometry>>,
 }
 
 impl SceneBuilder {
-    /// Without any mesh.
+    /// Without any geometry.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Copies a mesh and returns its `geometry_id`, the number of meshes before it. On an error the builder is as it
+    /// Copies a mesh and returns its `geometry_id`, the number of geometries before it. On an error the builder is as it
     /// was.
     pub fn add_triangles(&mut self, mesh: &TriangleView) -> Result<u32, BuildError> {
+        self.add(|geometry_id| Mesh::copy(geometry_id, mesh).map(Geometry::Mesh))
+    }
+
+    /// As [`SceneBuilder::add_triangles`] for spheres. One of radius 0 is hit by nothing.
+    pub fn add_spheres(&mut self, spheres: &SphereView) -> Result<u32, BuildError> {
+        self.add(|geometry_id| copy_spheres(geometry_id, spheres).map(Geometry::Spheres))
+    }
+
+    fn add(&mut self, copy: impl FnOnce(u32) -> Result<Geometry, BuildError>) -> Result<u32, BuildError> {
         let limit = INVALID_ID as usize;
         let count = self.geometries.len();
         if count >= limit {
             return Err(BuildError::TooManyInScene { what: "geometries", count: count + 1, limit });
         }
         let geometry_id = count as u32;
-        let geometry = Geometry::copy(geometry_id, mesh)?;
+        let geometry = copy(geometry_id)?;
         self.geometries
             .try_reserve(1)
             .map_err(|_| BuildError::OutOfMemory { bytes: (count + 1) * size_of::<Arc<Geometry>>() })?;
@@ -59,6 +75,38 @@ impl SceneBuilder {
 }
 
 impl Geometry {
+    /// None among spheres.
+    pub(super) fn mesh(&self) -> Option<&Mesh> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh),
+            Self::Spheres(_) => None,
+        }
+    }
+
+    /// None in a mesh.
+    pub(super) fn spheres(&self) -> &[([f32; 3], f32)] {
+        match self {
+            Self::Mesh(_) => &[],
+            Self::Spheres(spheres) => spheres,
+        }
+    }
+
+    pub(super) fn triangle_count(&self) -> usize {
+        self.mesh().map_or(0, |mesh| mesh.triangles.len())
+    }
+}
+
+fn copy_spheres(geometry_id: u32, spheres: &SphereView) -> Result<Vec<([f32; 3], f32)>, BuildError> {
+    let (count, limit) = (spheres.count(), INVALID_ID as usize);
+    if count > limit {
+        return Err(BuildError::TooMany { geometry_id, what: "spheres", count, limit });
+    }
+    let mut copies = reserve(count)?;
+    copies.extend(spheres.iter());
+    Ok(copies)
+}
+
+impl Mesh {
     fn copy(geometry_id: u32, mesh: &TriangleView) -> Result<Self, BuildError> {
         let limit = INVALID_ID as usize;
         let (vertex_count, triangle_count) = (mesh.positions.count(), mesh.indices.triangle_count());

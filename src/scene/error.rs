@@ -29,6 +29,12 @@ pub enum BuildError {
     )]
     NotFinite { geometry_id: u32, primitive_id: u32, vertex: u32, position: [f32; 3] },
 
+    #[error(
+        "geometry {geometry_id}, sphere {primitive_id}: centre ({}, {}, {}) and radius {radius} must be finite, the radius not below 0",
+        centre[0], centre[1], centre[2]
+    )]
+    InvalidSphere { geometry_id: u32, primitive_id: u32, centre: [f32; 3], radius: f32 },
+
     #[error("{0} is not built yet")]
     Unsupported(&'static str),
 

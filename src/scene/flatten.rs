@@ -1,13 +1,13 @@
-//! References to the triangles that a ray can hit, in the order of their ids.
+//! References to what a ray can hit, in the order of the ids.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::builder::Geometry;
+use super::builder::{Geometry, Mesh};
 use super::{BuildError, InvalidTriangles};
 use crate::accel::{Bounds8, BuildContext, PrimitiveSource, Reference};
-use crate::geometry::{Aabb, INVALID_ID, Triangle};
+use crate::geometry::{Aabb, INVALID_ID, Sphere, Triangle};
 use crate::simd::{Simd, SimdKernel};
 
 /// All meshes as one list of triangles.
@@ -24,16 +24,7 @@ pub(super) struct Flat {
 
 impl<'a> Meshes<'a> {
     pub(super) fn new(geometries: &'a [Arc<Geometry>]) -> Result<Self, BuildError> {
-        // A structure's references are u32, and so is the count of them.
-        const LIMIT: usize = u32::MAX as usize;
-        let count = geometries.iter().map(|geometry| geometry.triangles.len()).sum();
-        if count > LIMIT {
-            return Err(BuildError::TooManyInScene { what: "triangles", count, limit: LIMIT });
-        }
-        let mut starts = vec![0];
-        for geometry in geometries {
-            starts.push(starts[starts.len() - 1] + geometry.triangles.len() as u32);
-        }
+        let starts = starts(geometries, "triangles", Geometry::triangle_count)?;
         Ok(Self { geometries, starts })
     }
 
@@ -44,8 +35,26 @@ impl<'a> Meshes<'a> {
     /// The geometry that has the triangle of that number in the list.
     fn geometry_of(&self, number: u32) -> Cursor<'a> {
         let id = self.starts.partition_point(|&start| start <= number) - 1;
-        Cursor { geometry_id: id as u32, start: self.starts[id], geometry: &self.geometries[id] }
+        let mesh = self.geometries[id].mesh().expect("only meshes have triangles");
+        Cursor { geometry_id: id as u32, start: self.starts[id], mesh }
     }
+}
+
+/// For each geometry how many there are in those before it; then in all.
+fn starts(
+    geometries: &[Arc<Geometry>],
+    what: &'static str,
+    count: impl Fn(&Geometry) -> usize,
+) -> Result<Vec<u32>, BuildError> {
+    // A structure's references are u32, and so is the count of them.
+    const LIMIT: usize = u32::MAX as usize;
+    let mut starts = vec![0];
+    let mut total = 0usize;
+    for geometry in geometries {
+        total = total.saturating_add(count(geometry));
+        starts.push(total as u32);
+    }
+    if total > LIMIT { Err(BuildError::TooManyInScene { what, count: total, limit: LIMIT }) } else { Ok(starts) }
 }
 
 impl PrimitiveSource for Meshes<'_> {
@@ -53,8 +62,8 @@ impl PrimitiveSource for Meshes<'_> {
 
     #[inline(always)]
     fn primitive(&self, geometry_id: u32, primitive_id: u32) -> Triangle {
-        let geometry = &self.geometries[geometry_id as usize];
-        let vertices = geometry.vertices(geometry.triangles[primitive_id as usize]);
+        let mesh = self.geometries[geometry_id as usize].mesh().expect("only meshes have triangles");
+        let vertices = mesh.vertices(mesh.triangles[primitive_id as usize]);
         Triangle::new(vertices, geometry_id, primitive_id)
     }
 
@@ -63,18 +72,18 @@ impl PrimitiveSource for Meshes<'_> {
     }
 }
 
-/// A geometry and the number of its first triangle.
+/// A mesh and the number of its first triangle.
 #[derive(Clone, Copy)]
 struct Cursor<'a> {
     geometry_id: u32,
     start: u32,
-    geometry: &'a Geometry,
+    mesh: &'a Mesh,
 }
 
 /// The reference to a triangle that a ray can hit, else one of those that [`Census`] counts.
 #[inline(always)]
 fn reference(cursor: &Cursor, primitive_id: u32) -> Reference {
-    let vertices = cursor.geometry.vertices(cursor.geometry.triangles[primitive_id as usize]);
+    let vertices = cursor.mesh.vertices(cursor.mesh.triangles[primitive_id as usize]);
     let triangle = Triangle::new(vertices, cursor.geometry_id, primitive_id);
     let bounds = triangle.bounds();
     // A NaN as soon as one coordinate is not finite.
@@ -138,12 +147,15 @@ pub(super) fn flatten(
     context: &BuildContext,
 ) -> Result<Flat, BuildError> {
     let mut references = context.reserve(meshes.triangle_count())?;
+    if meshes.triangle_count() == 0 {
+        return Ok(Flat { references, bounds: Aabb::EMPTY, skipped_count: 0 });
+    }
     context.collect_with(
         &mut references,
         meshes.starts[meshes.geometries.len()],
         |number| meshes.geometry_of(number),
         |cursor: &mut Cursor, number| {
-            if number.wrapping_sub(cursor.start) as usize >= cursor.geometry.triangles.len() {
+            if number.wrapping_sub(cursor.start) as usize >= cursor.mesh.triangles.len() {
                 *cursor = meshes.geometry_of(number);
             }
             reference(cursor, number - cursor.start)
@@ -167,8 +179,8 @@ pub(super) fn flatten(
 
 fn not_finite(cursor: &Cursor, number: u32) -> BuildError {
     let primitive_id = number - cursor.start;
-    let positions = &cursor.geometry.positions;
-    let vertex = cursor.geometry.triangles[primitive_id as usize]
+    let positions = &cursor.mesh.positions;
+    let vertex = cursor.mesh.triangles[primitive_id as usize]
         .into_iter()
         .find(|&index| !Vec3::from_array(positions[index as usize]).is_finite())
         .expect("a triangle that is not finite has such a vertex");
@@ -177,5 +189,61 @@ fn not_finite(cursor: &Cursor, number: u32) -> BuildError {
         primitive_id,
         vertex,
         position: positions[vertex as usize],
+    }
+}
+
+/// All spheres.
+pub(super) struct Balls<'a> {
+    geometries: &'a [Arc<Geometry>],
+    starts: Vec<u32>,
+}
+
+impl<'a> Balls<'a> {
+    pub(super) fn new(geometries: &'a [Arc<Geometry>]) -> Result<Self, BuildError> {
+        let starts = starts(geometries, "spheres", |geometry| geometry.spheres().len())?;
+        Ok(Self { geometries, starts })
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.starts[self.geometries.len()] as usize
+    }
+
+    /// References to the spheres that a ray can hit; those of radius 0 are none. A radius below 0 is as one that is not
+    /// finite.
+    pub(super) fn flatten(&self, invalid: InvalidTriangles, context: &BuildContext) -> Result<Flat, BuildError> {
+        let mut references = context.reserve(self.count())?;
+        let (mut bounds, mut skipped_count) = (Aabb::EMPTY, 0);
+        for (geometry_id, geometry) in (0..).zip(self.geometries) {
+            context.check()?;
+            for (primitive_id, &(centre, radius)) in (0..).zip(geometry.spheres()) {
+                let sphere = Sphere { centre, radius, geometry_id, primitive_id };
+                if !sphere.is_valid() {
+                    if invalid == InvalidTriangles::Reject {
+                        return Err(BuildError::InvalidSphere { geometry_id, primitive_id, centre, radius });
+                    }
+                    skipped_count += 1;
+                    continue;
+                }
+                let inside = sphere.bounds();
+                bounds = bounds.union(inside);
+                if radius > 0.0 {
+                    references.push(Reference::new(&inside, geometry_id, primitive_id));
+                }
+            }
+        }
+        Ok(Flat { references, bounds, skipped_count })
+    }
+}
+
+impl PrimitiveSource for Balls<'_> {
+    type Primitive = Sphere;
+
+    fn primitive(&self, geometry_id: u32, primitive_id: u32) -> Sphere {
+        let (centre, radius) = self.geometries[geometry_id as usize].spheres()[primitive_id as usize];
+        Sphere { centre, radius, geometry_id, primitive_id }
+    }
+
+    fn starts(&self) -> &[u32] {
+        &self.starts
     }
 }

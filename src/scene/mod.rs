@@ -1,6 +1,7 @@
-//! From a caller's meshes to an immutable scene that answers queries.
+//! From a caller's meshes and spheres to an immutable scene that answers queries.
 
 mod batch;
+mod both;
 mod build;
 mod builder;
 mod error;
@@ -15,20 +16,27 @@ pub use error::BuildError;
 pub use options::{BuildOptions, InvalidTriangles};
 
 use crate::accel::{AnyAccel, Precision, Stats};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Sphere, Triangle};
 use crate::simd::DetectedIsa;
 
 /// An immutable scene; any number of threads may query it.
 pub struct Scene {
-    accel: AnyAccel,
+    content: Content,
     precision: Precision,
     isa: DetectedIsa,
     bounds: Aabb,
     stats: Stats,
 }
 
+/// One structure for each kind of primitive that there is, so that a kernel knows one kind.
+enum Content {
+    Triangles(AnyAccel<Triangle>),
+    Spheres(AnyAccel<Sphere>),
+    Both(Box<(AnyAccel<Triangle>, AnyAccel<Sphere>)>),
+}
+
 impl Scene {
-    /// The box of all triangles that are not skipped, those of zero area among them; [`Aabb::EMPTY`] without any.
+    /// The box of all triangles and spheres that are not skipped, those of zero area among them; [`Aabb::EMPTY`] without any.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }

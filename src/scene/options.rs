@@ -3,7 +3,7 @@
 use crate::accel::{Precision, Quality, Structure};
 use crate::simd::Isa;
 
-/// What happens to a triangle with a coordinate that is not finite.
+/// What happens to a triangle or sphere with a coordinate that is not finite, and to a radius below 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InvalidTriangles {
     /// The build fails and names the first one.

@@ -1,8 +1,14 @@
 //! Queries: the one place where a scene's structure and precision are looked at, once a call.
 
-use super::Scene;
-use crate::accel::{Accel, AnyAccel, AnyHit, Closest, ClosestHit, Counted, Precision, RayCounts, Surface, Vectorize};
-use crate::geometry::{Accurate, Fast, Hit, INVALID_ID, PrecisionMode, Ray};
+use std::marker::PhantomData;
+
+use super::both::Both;
+use super::{Content, Scene};
+use crate::accel::{
+    Accel, AnyAccel, AnyHit, Closest, ClosestHit, Counted, LeafForm, Precision, Primitive, Query, RayCounts, Surface,
+    SurfacePoint, WideBvh,
+};
+use crate::geometry::{Accurate, Fast, Hit, INVALID_ID, PrecisionMode, Ray, Sphere, Triangle};
 use crate::simd::DetectedIsa;
 
 /// Work that runs on whatever structure and precision a scene has.
@@ -13,33 +19,50 @@ pub(super) trait Kernel {
 
 impl Scene {
     /// The closest hit of a ray, or [`Hit::MISS`].
-    #[inline]
     pub fn intersect(&self, ray: &Ray) -> Hit {
-        self.intersect_then(ray, |hit| hit)
-    }
-
-    /// As [`Scene::intersect`], the hit handed to `then` as soon as it is known: a caller that writes it elsewhere
-    /// saves a copy.
-    #[inline]
-    pub fn intersect_then<R>(&self, ray: impl Into<Ray>, then: impl FnOnce(Hit) -> R) -> R {
-        self.dispatch(Single { question: ClosestOf, ray, then })
+        self.find::<Closest>(ray).0.map_or(Hit::MISS, complete)
     }
 
     /// As [`Scene::intersect`], and what finding the hit took.
-    #[inline]
-    pub fn intersect_counted(&self, ray: impl Into<Ray>) -> (Hit, RayCounts) {
-        self.dispatch(Single { question: CountedClosestOf, ray, then: |answer| answer })
+    pub fn intersect_counted(&self, ray: &Ray) -> (Hit, RayCounts) {
+        let (found, counts) = self.find::<Counted>(ray);
+        (found.map_or(Hit::MISS, complete), counts)
     }
 
     /// Whether the ray hits anything.
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.find::<AnyHit>(ray).0.is_some()
+    }
+
+    /// As [`Scene::intersect`], the ray made and the hit used inside the kernel: a caller that writes it elsewhere saves a
+    /// copy.
     #[inline]
-    pub fn occluded(&self, ray: impl Into<Ray>) -> bool {
+    pub(crate) fn intersect_then<R>(&self, ray: impl Into<Ray>, then: impl FnOnce(Hit) -> R) -> R {
+        self.dispatch(Single { question: ClosestOf, ray, then })
+    }
+
+    /// As [`Scene::occluded`], the ray made inside the kernel.
+    #[inline]
+    pub(crate) fn occluded_by(&self, ray: impl Into<Ray>) -> bool {
         self.dispatch(Single { question: Occlusion, ray, then: |is_hit| is_hit })
+    }
+
+    fn find<Q: Query>(&self, ray: &Ray) -> <Find<Q> as Kernel>::Output {
+        self.dispatch(Find::<Q>::new(*ray))
     }
 
     #[inline(always)]
     pub(super) fn dispatch<K: Kernel>(&self, kernel: K) -> K::Output {
-        match &self.accel {
+        match &self.content {
+            Content::Triangles(triangles) => self.dispatch_to(kernel, triangles),
+            Content::Spheres(spheres) => self.dispatch_to(kernel, spheres),
+            Content::Both(both) => self.dispatch_to_both(kernel, &both.0, &both.1),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn dispatch_to<K: Kernel, T: Primitive>(&self, kernel: K, accel: &AnyAccel<T>) -> K::Output {
+        match accel {
             AnyAccel::BruteForce(brute_force) => self.dispatch_apart(kernel, brute_force),
             AnyAccel::Bvh(bvh) => self.dispatch_apart(kernel, bvh),
             AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
@@ -47,8 +70,19 @@ impl Scene {
         }
     }
 
+    #[inline(never)]
+    fn dispatch_to_both<K: Kernel>(
+        &self,
+        kernel: K,
+        triangles: &AnyAccel<Triangle>,
+        spheres: &AnyAccel<Sphere>,
+    ) -> K::Output {
+        // Either part has its own precision.
+        kernel.run::<_, Accurate>(&Both { scene: self, triangles, spheres })
+    }
+
     #[inline(always)]
-    fn dispatch_isa<K: Kernel>(&self, kernel: K, bvh: &impl Vectorize) -> K::Output {
+    fn dispatch_isa<K: Kernel, F: LeafForm>(&self, kernel: K, bvh: &WideBvh<F>) -> K::Output {
         match self.isa {
             DetectedIsa::Scalar(simd) => self.dispatch_precision(kernel, &bvh.on(simd)),
             #[cfg(target_arch = "x86_64")]
@@ -109,10 +143,6 @@ pub(super) trait Question: Copy + Sync {
 #[derive(Clone, Copy)]
 pub(super) struct ClosestOf;
 
-/// What does it hit first, and what does it take to find that?
-#[derive(Clone, Copy)]
-struct CountedClosestOf;
-
 /// Does it hit anything?
 #[derive(Clone, Copy)]
 pub(super) struct Occlusion;
@@ -137,20 +167,6 @@ impl Question for ClosestOf {
         T: 'r,
     {
         accel.query_runs::<Closest, P, R, T>(next_run, |place, found| answer(place, found.map_or(Hit::MISS, complete)));
-    }
-}
-
-impl Question for CountedClosestOf {
-    type Answer = (Hit, RayCounts);
-
-    #[inline(always)]
-    fn answer<A: Accel, P: PrecisionMode, R>(
-        self,
-        accel: &A,
-        ray: impl Into<Ray>,
-        then: impl FnOnce((Hit, RayCounts)) -> R,
-    ) -> R {
-        accel.query::<Counted, P, R>(ray, |found, counts| then((found.map_or(Hit::MISS, complete), counts)))
     }
 }
 
@@ -188,6 +204,28 @@ fn complete(found: ClosestHit<impl Surface>) -> Hit {
         primitive_id,
         geometry_id,
         instance_id: INVALID_ID,
+    }
+}
+
+/// A question to whatever there is, with the kernels that all share who are not in a hurry.
+pub(super) struct Find<Q> {
+    ray: Ray,
+    query: PhantomData<Q>,
+}
+
+impl<Q> Find<Q> {
+    pub(super) fn new(ray: Ray) -> Self {
+        Self { ray, query: PhantomData }
+    }
+}
+
+impl<Q: Query> Kernel for Find<Q> {
+    type Output = (Option<ClosestHit<SurfacePoint>>, Q::Tally);
+
+    #[inline(always)]
+    fn run<A: Accel + Sync, P: PrecisionMode>(self, accel: &A) -> Self::Output {
+        let (found, tally) = accel.find::<Q, P>(self.ray);
+        (found.map(ClosestHit::on_any_surface), tally)
     }
 }
 

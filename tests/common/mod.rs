@@ -1,7 +1,7 @@
-//! Meshes and rays that are hard on purpose, all seeded.
+//! Meshes, spheres and rays that are hard on purpose, all seeded.
 
 use glam::Vec3;
-use gnomon::{IndexBytes, IndexView, PositionView, Ray, SceneBuilder, TriangleView};
+use gnomon::{IndexBytes, IndexView, PositionView, Ray, SceneBuilder, SphereView, TriangleView};
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
 pub(crate) struct Rng(u64);
@@ -39,15 +39,31 @@ pub(crate) struct Mesh {
     pub(crate) name: &'static str,
     pub(crate) vertices: Vec<Vec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// Centres and radii.
+    pub(crate) spheres: Vec<(Vec3, f32)>,
 }
 
 impl Mesh {
-    /// As several geometries, which share edges: half of the triangles, [`ZERO_AREA_GEOMETRY`], none, the other half.
+    /// As several geometries, which share edges: half of the triangles, [`ZERO_AREA_GEOMETRY`], none, the other half. In
+    /// place of the last two the spheres, if there are any; without triangles the spheres as the triangles otherwise.
     pub(crate) fn add_to(&self, builder: &mut SceneBuilder) {
         let (first_half, second_half) = self.triangles.split_at(self.triangles.len() / 2);
         let zero_area: Vec<[u32; 3]> = self.triangles.iter().map(|&[a, b, _]| [a, b, a]).collect();
-        for triangles in [first_half, &zero_area, &[], second_half] {
-            self.add_geometry(triangles, builder);
+        let points: Vec<(Vec3, f32)> = self.spheres.iter().map(|&(centre, _)| (centre, 0.0)).collect();
+        let (first_spheres, other_spheres) = self.spheres.split_at(self.spheres.len() / 2);
+        if self.spheres.is_empty() {
+            for triangles in [first_half, &zero_area, &[], second_half] {
+                self.add_geometry(triangles, builder);
+            }
+        } else if self.triangles.is_empty() {
+            for spheres in [first_spheres, &points, &[], other_spheres] {
+                add_spheres(spheres, builder);
+            }
+        } else {
+            self.add_geometry(&self.triangles, builder);
+            self.add_geometry(&zero_area, builder);
+            add_spheres(&points, builder);
+            add_spheres(&self.spheres, builder);
         }
     }
 
@@ -63,7 +79,11 @@ impl Mesh {
 
     pub(crate) fn from_soup(name: &'static str, corners: Vec<Vec3>) -> Self {
         let triangles = (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        Self { name, vertices: corners, triangles }
+        Self { name, vertices: corners, triangles, spheres: Vec::new() }
+    }
+
+    fn with_spheres(self, name: &'static str, spheres: Vec<(Vec3, f32)>) -> Self {
+        Self { name, spheres, ..self }
     }
 
     fn mapped(mut self, name: &'static str, map: impl Fn(Vec3) -> Vec3) -> Self {
@@ -71,6 +91,26 @@ impl Mesh {
         self.vertices.iter_mut().for_each(|v| *v = map(*v));
         self
     }
+}
+
+fn add_spheres(spheres: &[(Vec3, f32)], builder: &mut SceneBuilder) {
+    let floats = spheres.iter().flat_map(|(centre, radius)| [centre.x, centre.y, centre.z, *radius]);
+    let bytes: Vec<u8> = floats.flat_map(f32::to_ne_bytes).collect();
+    let (centres, radii) =
+        if spheres.is_empty() { (&[][..], &[][..]) } else { (&bytes[..bytes.len() - 4], &bytes[12..]) };
+    let centres = PositionView::new(centres, 16, spheres.len()).expect("four floats each");
+    let view = SphereView::new(centres, radii, 16).expect("four floats each");
+    builder.add_spheres(&view).expect("there are few");
+}
+
+/// Of very different sizes; every eighth one is there three times.
+fn spheres(rng: &mut Rng, count: usize, size: f32) -> Vec<(Vec3, f32)> {
+    (0..count)
+        .flat_map(|index| {
+            let sphere = (rng.point(), size * rng.signed().abs().powi(4).max(1e-6));
+            std::iter::repeat_n(sphere, if index % 8 == 0 { 3 } else { 1 })
+        })
+        .collect()
 }
 
 fn soup(rng: &mut Rng, count: usize, size: f32) -> Mesh {
@@ -106,14 +146,14 @@ fn height_field(rng: &mut Rng, side: u32) -> Mesh {
         .flat_map(|y| (0..side).map(move |x| y * row + x))
         .flat_map(|at| [[at, at + 1, at + row], [at + 1, at + row + 1, at + row]])
         .collect();
-    Mesh { name: "height field", vertices, triangles }
+    Mesh { name: "height field", vertices, triangles, spheres: Vec::new() }
 }
 
 /// The same few triangles many times, and some in one plane: ties everywhere.
 fn duplicates(rng: &mut Rng) -> Mesh {
     let few = soup(rng, 12, 0.8);
     let flat = height_field(rng, 6).mapped("flat", |v| Vec3::new(v.x / 3.0 - 1.0, v.y / 3.0 - 1.0, 0.25));
-    let mut mesh = Mesh { name: "duplicates", vertices: few.vertices, triangles: Vec::new() };
+    let mut mesh = Mesh { name: "duplicates", vertices: few.vertices, triangles: Vec::new(), spheres: Vec::new() };
     for _ in 0..20 {
         mesh.triangles.extend_from_slice(&few.triangles);
     }
@@ -137,19 +177,30 @@ pub(crate) fn meshes() -> Vec<Mesh> {
         soup(&mut rng, 400, 0.2).mapped("huge", |v| v * 1e30),
         soup(&mut rng, 400, 0.2).mapped("denormal", |v| v * 1e-41),
         soup(&mut rng, 400, 0.5).mapped("in a plane", |v| Vec3::new(v.x, 0.5, v.z)),
+        Mesh::from_soup("spheres", Vec::new()).with_spheres("spheres", spheres(&mut rng, 500, 0.3)),
+        soup(&mut rng, 400, 0.2).with_spheres("triangles and spheres", spheres(&mut rng, 300, 0.3)),
     ]
 }
 
 /// Rays at random, at vertices, edges and insides, along axes, in planes, from far away, with long and short
 /// directions.
 pub(crate) fn rays_for(mesh: &Mesh, rng: &mut Rng) -> Vec<Ray> {
-    let lower = mesh.vertices.iter().copied().reduce(Vec3::min).expect("a mesh has vertices");
-    let upper = mesh.vertices.iter().copied().reduce(Vec3::max).expect("a mesh has vertices");
+    let points = || mesh.vertices.iter().copied().chain(mesh.spheres.iter().map(|&(centre, _)| centre));
+    let lower = points().reduce(Vec3::min).expect("a mesh has vertices or spheres");
+    let upper = points().reduce(Vec3::max).expect("a mesh has vertices or spheres");
     let (centre, half) = (lower * 0.5 + upper * 0.5, upper * 0.5 - lower * 0.5);
     let scale = half.max_element();
     let mut rays = Vec::new();
     for round in 0..1200 {
-        let corners = mesh.triangles[rng.below(mesh.triangles.len())].map(|index| mesh.vertices[index as usize]);
+        let primitive = rng.below(mesh.triangles.len() + mesh.spheres.len());
+        let corners = match mesh.triangles.get(primitive) {
+            Some(triangle) => triangle.map(|index| mesh.vertices[index as usize]),
+            // Three points of the sphere.
+            None => {
+                let (centre, radius) = mesh.spheres[primitive - mesh.triangles.len()];
+                [0; 3].map(|_| centre + radius * rng.point().normalize_or(Vec3::X))
+            }
+        };
         let (a, b) = (rng.signed().abs(), rng.signed().abs());
         let on_edge = corners[0] + (corners[1] - corners[0]) * a;
         let target = match round % 6 {

@@ -26,7 +26,7 @@ impl Pending {
 impl<T: Primitive> Walk for Bvh<T> {
     type Primitive = T;
 
-    #[inline(always)]
+    #[inline(never)]
     fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
         let slabs = SlabRay::new(ray, &self.bounds);
         let primitive_ray = T::make_ready(ray);

@@ -3,12 +3,14 @@
 
 use std::marker::PhantomData;
 
+use super::Vectorized;
 use super::leaf_test::{LeafTest, TriangleTest};
 use super::node::Child;
+use super::wavefront::Wavefront;
 use crate::accel::build_context::slices;
 use crate::accel::reference::{PrimitiveSource, Reference, TriangleSource};
-use crate::accel::{BuildContext, BuildFailure, ClosestHit, Primitive};
-use crate::geometry::Triangle;
+use crate::accel::{BuildContext, BuildFailure, ClosestHit, Primitive, Query, query_one_by_one};
+use crate::geometry::{PrecisionMode, Ray, Triangle};
 use crate::simd::{LANES, Simd};
 
 /// How the primitives of a leaf are stored, and tested.
@@ -46,10 +48,28 @@ pub(crate) trait LeafForm: Copy + Send + Sync + 'static {
         source: &impl PrimitiveSource<Primitive = Self::Primitive>,
     ) -> usize;
 
+    /// See [`Accel::query_runs`]. Ray by ray, if a form has nothing better.
+    fn query_runs<'r, S: Simd, Q, P, R, T>(
+        accel: &Vectorized<'_, S, Self>,
+        next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+        answer: impl Fn(&mut T, Option<ClosestHit<Surface<Self>>>),
+    ) where
+        Q: Query,
+        P: PrecisionMode,
+        for<'a> &'a R: Into<Ray>,
+        R: 'r,
+        T: 'r,
+    {
+        query_one_by_one::<_, Q, P, R, T>(accel, next_run, answer);
+    }
+
     /// One of the leaf whose words come first, with geometry and primitive joined into one number, in place of the
     /// primitive: [`Leaves::resolve`] separates them.
     fn primitive(words: &[f32], count: usize, lane: usize) -> Self::Primitive;
 }
+
+/// What hits of a form's primitives tell.
+type Surface<F> = <<F as LeafForm>::Primitive as Primitive>::Surface;
 
 /// A form of triangles.
 pub(crate) trait TriangleForm: LeafForm<Primitive = Triangle> {
@@ -242,6 +262,20 @@ impl LeafForm for ByAxis {
     #[inline(always)]
     fn primitive(words: &[f32], count: usize, lane: usize) -> Triangle {
         Self::leaf(words, count).triangle(lane)
+    }
+
+    fn query_runs<'r, S: Simd, Q, P, R, T>(
+        accel: &Vectorized<'_, S, Self>,
+        next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
+        answer: impl Fn(&mut T, Option<ClosestHit>),
+    ) where
+        Q: Query,
+        P: PrecisionMode,
+        for<'a> &'a R: Into<Ray>,
+        R: 'r,
+        T: 'r,
+    {
+        accel.simd.vectorize_batch(Wavefront::<Q, P, _, _, _, _>::new(accel.bvh, next_run, answer));
     }
 }
 

@@ -21,16 +21,16 @@ mod wavefront;
 
 pub(crate) use compact_leaves::Compact;
 use glam::Vec4;
-use leaves::{ByAxis, LeafForm, Leaves};
+use leaves::Leaves;
+pub(crate) use leaves::{ByAxis, LeafForm};
 use node::{Child, WideNode};
 pub(crate) use sphere_leaves::Spheres;
-use wavefront::Wavefront;
 
 use super::bvh::{BinnedSah, Morton, build, reinsert};
 use super::reference::{PrimitiveSource, Reference};
 use super::stats::Shape;
-use super::{Accel, BuildContext, BuildFailure, ClosestHit, Quality, Query};
-use crate::geometry::{Aabb, PrecisionMode, Ray, Triangle};
+use super::{Accel, BuildContext, BuildFailure, ClosestHit, Primitive, Quality, Query};
+use crate::geometry::{Aabb, PrecisionMode, Ray};
 use crate::simd::{LANES, Simd, prefetch_lines};
 
 /// The form of its leaves makes no difference to what it answers.
@@ -109,69 +109,39 @@ fn check_count<F: LeafForm>(count: usize) -> Result<(), BuildFailure> {
     if count > limit { Err(BuildFailure::TooManyTriangles { count, limit }) } else { Ok(()) }
 }
 
-/// A hierarchy that instruction sets query.
-pub(crate) trait Vectorize {
-    type On<'a, S: Simd>: Accel + Sync
-    where
-        Self: 'a;
-
-    fn on<S: Simd>(&self, simd: S) -> Self::On<'_, S>;
-}
-
 /// The hierarchy as an instruction set queries it.
-pub(crate) struct Vectorized<'a, S, F = ByAxis> {
+pub(crate) struct Vectorized<'a, S, F> {
     bvh: &'a WideBvh<F>,
     simd: S,
 }
 
-impl Vectorize for WideBvh {
-    type On<'a, S: Simd> = Vectorized<'a, S>;
-
+impl<F: LeafForm> WideBvh<F> {
     #[inline(always)]
-    fn on<S: Simd>(&self, simd: S) -> Vectorized<'_, S> {
+    pub(crate) fn on<S: Simd>(&self, simd: S) -> Vectorized<'_, S, F> {
         Vectorized { bvh: self, simd }
     }
 }
 
-impl Vectorize for WideBvh<Compact> {
-    type On<'a, S: Simd> = Vectorized<'a, S, Compact>;
-
-    #[inline(always)]
-    fn on<S: Simd>(&self, simd: S) -> Vectorized<'_, S, Compact> {
-        Vectorized { bvh: self, simd }
-    }
-}
-
-/// Batches go ray by ray.
-impl<S: Simd> Accel for Vectorized<'_, S, Compact> {
-    type Found = Triangle;
+impl<S: Simd, F: LeafForm> Accel for Vectorized<'_, S, F> {
+    type Found = <F::Primitive as Primitive>::Surface;
 
     #[inline(always)]
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
         ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
+        then: impl FnOnce(Option<ClosestHit<Self::Found>>, Q::Tally) -> R,
     ) -> R {
         self.simd.vectorize(traverse::Traversal::<Q, P, _, _, _>::new(self.bvh, ray, then))
     }
-}
 
-impl<S: Simd> Accel for Vectorized<'_, S> {
-    type Found = Triangle;
-
-    #[inline(always)]
-    fn query<Q: Query, P: PrecisionMode, R>(
-        &self,
-        ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit>, Q::Tally) -> R,
-    ) -> R {
-        self.simd.vectorize(traverse::Traversal::<Q, P, _, _, _>::new(self.bvh, ray, then))
+    fn find<Q: Query, P: PrecisionMode>(&self, ray: Ray) -> (Option<ClosestHit<Self::Found>>, Q::Tally) {
+        self.bvh.find::<Q, P, S>(self.simd, ray)
     }
 
     fn query_runs<'r, Q, P, R, T>(
         &self,
         next_run: impl FnMut() -> Option<(&'r [R], &'r mut [T])>,
-        answer: impl Fn(&mut T, Option<ClosestHit>),
+        answer: impl Fn(&mut T, Option<ClosestHit<Self::Found>>),
     ) where
         Q: Query,
         P: PrecisionMode,
@@ -179,6 +149,6 @@ impl<S: Simd> Accel for Vectorized<'_, S> {
         R: 'r,
         T: 'r,
     {
-        self.simd.vectorize_batch(Wavefront::<Q, P, _, _, _, _>::new(self.bvh, next_run, answer));
+        F::query_runs::<S, Q, P, R, T>(self, next_run, answer);
     }
 }

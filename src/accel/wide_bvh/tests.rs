@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::leaves::{ByAxis, LeafForm, LeafTriangles};
+use super::leaves::{ByAxis, LeafTriangles, TriangleForm};
 use super::node::Child;
 use super::{Compact, WideBvh, check_count};
 use crate::accel::{BuildContext, BuildFailure, PrimitiveSource, Quality, Reference, Watch};
@@ -37,7 +37,7 @@ impl Soup {
         self.build_in_form(quality, isa, thread_count)
     }
 
-    fn build_in_form<F: LeafForm>(&self, quality: Quality, isa: Isa, thread_count: usize) -> WideBvh<F> {
+    fn build_in_form<F: TriangleForm>(&self, quality: Quality, isa: Isa, thread_count: usize) -> WideBvh<F> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().expect("a few threads");
         let watch = Watch::default();
         let context = BuildContext::new((thread_count > 1).then_some(&pool), None, isa, &watch);
@@ -67,7 +67,7 @@ fn small_triangle(id: u32, size: f32) -> [[f32; 3]; 3] {
 const QUALITIES: [Quality; 3] = [Quality::Low, Quality::Medium, Quality::High];
 
 /// Whether threads and instruction sets make no difference to the bytes of a tree.
-fn check_bytes<F: LeafForm>() {
+fn check_bytes<F: TriangleForm>() {
     let soup = Soup::new(60_000, |id| small_triangle(id, if id % 100 == 0 { 0.3 } else { 0.01 }));
     for quality in QUALITIES {
         let expected: WideBvh<F> = soup.build_in_form(quality, Isa::Scalar, 1);
@@ -98,7 +98,7 @@ fn height_field(side: u32) -> Soup {
 }
 
 /// The children that are leaves.
-fn leaves_of<F: LeafForm>(bvh: &WideBvh<F>) -> Vec<Child> {
+fn leaves_of<F: TriangleForm>(bvh: &WideBvh<F>) -> Vec<Child> {
     let (mut found, mut pending) = (Vec::new(), vec![bvh.root]);
     while let Some(child) = pending.pop() {
         if child.is_leaf() {
@@ -144,7 +144,7 @@ fn identical_triangles_are_stored_once_with_the_lowest_id() {
     let soup = Soup::new(300_000, |_| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]]);
     for quality in QUALITIES {
         let bvh = soup.build(quality, Isa::Auto, 2);
-        assert_eq!(bvh.leaves.triangle_count(), 1);
+        assert_eq!(bvh.leaves.primitive_count(), 1);
         assert_eq!(bvh.leaves.leaf((0, 1)).triangle(0).primitive_id, 0);
     }
 }
@@ -157,7 +157,7 @@ fn few_different_triangles_many_times_end_in_one_leaf_each() {
         1 => [[1.0, 1.0, 0.0], [1.0, 0.0, 0.5], [0.0, 1.0, 0.5]],
         _ => [[5.0, 5.0, 5.0], [6.0, 5.0, 5.0], [5.0, 6.0, 5.0]],
     });
-    assert_eq!(soup.build(Quality::Medium, Isa::Auto, 2).leaves.triangle_count(), 3);
+    assert_eq!(soup.build(Quality::Medium, Isa::Auto, 2).leaves.primitive_count(), 3);
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn hard_arrangements_build_in_time() {
         for quality in QUALITIES {
             let start = Instant::now();
             let bvh = soup.build(quality, Isa::Auto, 2);
-            assert_eq!(bvh.leaves.triangle_count(), COUNT as usize, "{name} {quality:?}");
+            assert_eq!(bvh.leaves.primitive_count(), COUNT as usize, "{name} {quality:?}");
             let seconds = start.elapsed();
             // Two hundred times what an ordinary scene takes; unoptimised builds and loaded machines are slow.
             assert!(seconds < Duration::from_secs(20), "{name} {quality:?} took {seconds:?}");
@@ -195,11 +195,11 @@ fn hard_arrangements_build_in_time() {
 
 #[test]
 fn more_triangles_than_references_can_name_are_refused_with_both_numbers() {
-    assert_eq!(ByAxis::MOST_TRIANGLES, 1 << 28);
-    let limit = ByAxis::MOST_TRIANGLES;
+    assert_eq!(ByAxis::MOST_PRIMITIVES, 1 << 28);
+    let limit = ByAxis::MOST_PRIMITIVES;
     assert_eq!(check_count::<ByAxis>(limit), Ok(()));
     assert_eq!(check_count::<ByAxis>(limit + 1), Err(BuildFailure::TooManyTriangles { count: limit + 1, limit }));
-    let limit = Compact::MOST_TRIANGLES;
+    let limit = Compact::MOST_PRIMITIVES;
     assert_eq!(check_count::<Compact>(limit), Ok(()));
     assert_eq!(check_count::<Compact>(limit + 1), Err(BuildFailure::TooManyTriangles { count: limit + 1, limit }));
 }

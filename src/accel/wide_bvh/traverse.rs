@@ -10,6 +10,7 @@ use super::box_test::{BoxTest, Boxes, Oblique, Plain};
 use super::leaf_test::{Best, LeafTest};
 use super::leaves::LeafForm;
 use super::node::{Child, WideNode};
+use crate::accel::Primitive;
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::accel::tally::Tally;
@@ -48,6 +49,17 @@ type Stack = ArrayVec<Pending, MOST_PENDING>;
 #[repr(align(32))]
 struct Aligned<T>(T);
 
+/// The hit of a ray, and what finding it took.
+pub(super) type Found<Q, F> =
+    (Option<ClosestHit<<<F as LeafForm>::Primitive as Primitive>::Surface>>, <Q as Query>::Tally);
+
+impl<F: LeafForm> WideBvh<F> {
+    /// One kernel for all who need not have the ray made and its hit used inside.
+    pub(super) fn find<Q: Query, P: PrecisionMode, S: Simd>(&self, simd: S, ray: Ray) -> Found<Q, F> {
+        simd.vectorize(Traversal::<Q, P, _, _, _>::new(self, ray, |found, tally| (found, tally)))
+    }
+}
+
 pub(super) struct Traversal<'a, Q, P, F, I, T> {
     bvh: &'a WideBvh<F>,
     ray: I,
@@ -68,51 +80,52 @@ where
     P: PrecisionMode,
     F: LeafForm,
     I: Into<Ray>,
-    T: FnOnce(Option<ClosestHit<F::Primitive>>, Q::Tally) -> R,
+    T: FnOnce(Option<ClosestHit<<F::Primitive as Primitive>::Surface>>, Q::Tally) -> R,
 {
     type Output = R;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> R {
-        let Self { bvh, ray, then, choices } = self;
+        let Self { bvh, ray, then, .. } = self;
         let ray = ray.into();
         match ObliqueSlabs::new(&ray, &bvh.corners) {
             Some(slabs) => {
                 let mut stack = Aligned(Stack::new_const());
                 let mut walk = Walk::<Q, F>::new(bvh, &ray, &mut stack.0);
                 let found = walk.run::<P, S, _>(simd, &Oblique::new(slabs));
-                then(found, walk.tally)
+                then(found.map(|hit| hit.on_surface(&ray)), walk.tally)
             }
             // In a frame of its own, so that ordinary rays do not pay for its registers.
-            None => simd.vectorize(AlongPlanes(Traversal { bvh, ray, then, choices })),
+            None => {
+                let (found, tally) = simd.vectorize(AlongPlanes::<Q, P, F> { bvh, ray, choices: PhantomData });
+                then(found, tally)
+            }
         }
     }
 }
 
 /// A ray that runs along a plane, or of unusual length, or from behind its origin, or not valid.
-struct AlongPlanes<'a, Q, P, F, T>(Traversal<'a, Q, P, F, Ray, T>);
+struct AlongPlanes<'a, Q, P, F> {
+    bvh: &'a WideBvh<F>,
+    ray: Ray,
+    choices: PhantomData<(Q, P)>,
+}
 
-impl<Q, P, F, R, T> SimdKernel for AlongPlanes<'_, Q, P, F, T>
-where
-    Q: Query,
-    P: PrecisionMode,
-    F: LeafForm,
-    T: FnOnce(Option<ClosestHit<F::Primitive>>, Q::Tally) -> R,
-{
-    type Output = R;
+impl<Q: Query, P: PrecisionMode, F: LeafForm> SimdKernel for AlongPlanes<'_, Q, P, F> {
+    type Output = Found<Q, F>;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> R {
-        let Traversal { bvh, ray, then, .. } = self.0;
+    fn run<S: Simd>(self, simd: S) -> Found<Q, F> {
+        let Self { bvh, ray, .. } = self;
         if !ray.is_valid() {
-            return then(None, Q::Tally::default());
+            return (None, Q::Tally::default());
         }
         let mut stack = Aligned(Stack::new_const());
         let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
         let mut walk = Walk::<Q, F>::new(bvh, &ray, &mut stack.0);
         walk.leaves.check_range();
         let found = walk.run::<P, S, _>(simd, &boxes);
-        then(found, walk.tally)
+        (found.map(|hit| hit.on_surface(&ray)), walk.tally)
     }
 }
 

@@ -16,7 +16,6 @@ use super::WideBvh;
 use super::leaves::{Leaf, LeafRows, LeafTriangles};
 use super::node::{Child, WideNode};
 use super::packet::{PACKET, Packet, Spread};
-use super::traverse::Traversal;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, settled};
 use crate::math::{UNIT_ROUNDOFF, gamma};
@@ -369,7 +368,7 @@ where
                     source.answer_packets::<Q, P, S>(simd, bvh, &answer);
                 }
                 let Some((ray, place)) = source.next() else { return };
-                simd.vectorize(Traversal::<Q, P, _, _, _>::new(bvh, ray, |found, _| answer(place, found)));
+                answer(place, bvh.find::<Q, P, S>(simd, ray.into()).0);
             }
             if !source.next_run() {
                 return;
@@ -430,7 +429,7 @@ where
                 return true;
             }
             let answer = &self.answer;
-            simd.vectorize(Traversal::<Q, P, _, _, _>::new(self.bvh, source, |found, _| answer(place, found)));
+            answer(place, self.bvh.find::<Q, P, S>(simd, source.into()).0);
         }
     }
 
