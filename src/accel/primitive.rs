@@ -1,6 +1,6 @@
 //! What structures hold. All but the wide BVH are generic over it, so that a scene's kernels know only what it has.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::geometry::{Aabb, INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
 
@@ -50,6 +50,9 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
 
     /// The least box that contains it.
     fn bounds(&self) -> Aabb;
+
+    /// Whether it has a point in the closed box; may say so of one that passes within the rounding of `f64`.
+    fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool;
 }
 
 impl Primitive for Triangle {
@@ -79,5 +82,10 @@ impl Primitive for Triangle {
 
     fn bounds(&self) -> Aabb {
         Triangle::bounds(self)
+    }
+
+    #[inline(always)]
+    fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool {
+        Triangle::overlaps(self, lower, upper)
     }
 }
