@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::builder::Geometry;
 use super::flatten::{Flat, Meshes, flatten};
 use super::{BuildError, BuildOptions, Scene, threads};
-use crate::accel::{self, BuildContext, Precision, Stats, Structure, Watch};
+use crate::accel::{self, BuildContext, Plan, Precision, Stats, Structure, Watch};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
@@ -37,7 +37,13 @@ fn build_with(
     let meshes = Meshes::new(geometries)?;
     let Flat { references, bounds, skipped_count } = flatten(&meshes, options.invalid_triangles, context)?;
     let structure = accel::choose(options.structure, references.len());
-    let accel = accel::build(structure, options.quality, options.is_compact, references, bounds, &meshes, context)?;
+    let plan = Plan {
+        structure,
+        quality: options.quality,
+        is_compact: options.is_compact,
+        grid_cells_per_triangle: options.grid_cells_per_triangle,
+    };
+    let accel = accel::build(plan, references, bounds, &meshes, context)?;
     let shape = accel.shape();
     // Only the wide BVH has kernels beyond the scalar one.
     let isa = if structure == Structure::WideBvh { options.isa } else { Isa::Scalar }.resolve();
