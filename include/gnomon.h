@@ -72,10 +72,10 @@
 // Every triangle is asked: for a handful, and as a reference.
 #define GNOMON_STRUCTURE_BRUTE_FORCE 1u
 
-// Uniform grid. Not built yet.
+// Uniform grid: for triangles of one size, evenly spread.
 #define GNOMON_STRUCTURE_GRID 2u
 
-// Octree. Not built yet.
+// Octree: for scenes that are empty here and crowded there.
 #define GNOMON_STRUCTURE_OCTREE 3u
 
 // kd-tree. Not built yet.
@@ -92,12 +92,15 @@
 #define GNOMON_STRUCTURE_WIDE_BVH 7u
 
 // Fastest build. BVH: split at the median of the longest axis. WIDE_BVH: 8 bins and larger leaves.
+// GRID: 2 cells a triangle. OCTREE: leaves of 16 triangles, where there are as many.
 #define GNOMON_QUALITY_LOW 0u
 
-// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007).
+// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007). GRID: 6 cells a
+// triangle. OCTREE: leaves of 8.
 #define GNOMON_QUALITY_MEDIUM 1u
 
-// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
+// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018). GRID: 12
+// cells a triangle. OCTREE: leaves of 6.
 #define GNOMON_QUALITY_HIGH 2u
 
 // Decided in float, watertight; t, u and v come from what decided. For previews.
@@ -171,6 +174,10 @@ typedef struct GnomonBuildOptions {
     // slower, by up to a fifth; at most 44 million triangles. The answers are the same. 0, the default: it does
     // not. No other structure is changed by it.
     uint32_t compact;
+    // How many cells a GRID has for each triangle, roughly; fewer where its lists would take too much memory. 0, the
+    // default: 2, 6 or 12 by quality. More make a difference where rays pass much that is empty; 27 is a number often
+    // taught. No other structure is changed by it.
+    float grid_cells_per_triangle;
 } GnomonBuildOptions;
 
 // How to answer a batch. Fill it with `gnomon_query_options_init`, then change what you like.
@@ -228,12 +235,12 @@ typedef struct GnomonSpheres {
 typedef struct GnomonSceneStats {
     // Triangles that were added, without the skipped ones.
     uint64_t triangle_count;
-    // Nodes, leaves among them; 0 for brute force.
+    // Nodes, leaves among them; the cells of a grid; 0 for brute force.
     uint64_t node_count;
-    // Nodes without children.
+    // Nodes without children; the cells of a grid.
     uint64_t leaf_count;
-    // Triangles and spheres stored in leaves: not those of zero area or radius, which nothing hits, nor copies (equal to the bit) that a BVH cannot
-    // tell apart.
+    // Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a BVH cannot
+    // tell apart. Where leaves divide space, a triangle counts in each that it overlaps.
     uint64_t reference_count;
     // Triangles and spheres left out by `GNOMON_INVALID_SKIP`.
     uint64_t skipped_count;

@@ -50,6 +50,7 @@ TEST_CASE("build_options_init_fills_the_documented_defaults") {
     CHECK((options.progress == nullptr));
     CHECK(options.progress_user == nullptr);
     CHECK(options.compact == 0);
+    CHECK(options.grid_cells_per_triangle == 0);
 }
 
 TEST_CASE("query_options_init_fills_the_documented_defaults") {

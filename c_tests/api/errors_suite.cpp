@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "api/fixtures.hpp"
@@ -254,6 +255,15 @@ TEST_CASE("unknown_enums_of_the_build_options_are_named") {
     }
 }
 
+TEST_CASE("grid_cells_per_triangle_that_is_no_number_of_cells_is_named") {
+    const std::pair<float, const char*> cases[] = {{kNan, "NaN"}, {-1.5f, "-1.5"}, {kInfinity, "inf"}};
+    for (const auto& [cells, name] : cases) {
+        GnomonBuildOptions options = default_build_options();
+        options.grid_cells_per_triangle = cells;
+        build_fails(options, GNOMON_ERROR_INVALID_ARGUMENT, {"grid_cells_per_triangle", name});
+    }
+}
+
 TEST_CASE("build_options_never_initialised_are_named") {
     for (const std::uint32_t struct_size : {0u, 3u, 24u}) {
         GnomonBuildOptions options = default_build_options();
@@ -279,7 +289,9 @@ TEST_CASE("build_options_of_an_older_header_keep_the_defaults_of_what_it_lacks")
     GnomonBuildOptions older = default_build_options();
     older.struct_size = offsetof(GnomonBuildOptions, compact);
     older.structure = GNOMON_STRUCTURE_WIDE_BVH;
-    older.compact = 4242;  // not there for whoever states that size
+    // Not there for whoever states that size.
+    older.compact = 4242;
+    older.grid_cells_per_triangle = kNan;
     const SceneHandle scene = build_scene({unit_triangle()}, older);
     CHECK(intersect(scene, ray_down(0.25f, 0.25f)).t == 2);
 }

@@ -9,6 +9,8 @@ namespace harness {
 const std::vector<Named> kStructures{
     {"auto", GNOMON_STRUCTURE_AUTO},
     {"brute_force", GNOMON_STRUCTURE_BRUTE_FORCE},
+    {"grid", GNOMON_STRUCTURE_GRID},
+    {"octree", GNOMON_STRUCTURE_OCTREE},
     {"bvh", GNOMON_STRUCTURE_BVH},
     {"wide_bvh", GNOMON_STRUCTURE_WIDE_BVH},
 };
@@ -22,8 +24,6 @@ const std::vector<Named> kPrecisions{
     {"accurate", GNOMON_PRECISION_ACCURATE},
 };
 const std::vector<Unbuilt> kUnbuilt{
-    {"GNOMON_STRUCTURE_GRID", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_GRID},
-    {"GNOMON_STRUCTURE_OCTREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_OCTREE},
     {"GNOMON_STRUCTURE_KD_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_KD_TREE},
     {"GNOMON_STRUCTURE_BSP_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_BSP_TREE},
     {"GNOMON_PRECISION_EXACT", &GnomonBuildOptions::precision, GNOMON_PRECISION_EXACT},

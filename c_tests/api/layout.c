@@ -49,6 +49,7 @@ ASSERT_OFFSET(GnomonBuildOptions, memory_limit_bytes, 32);
 ASSERT_OFFSET(GnomonBuildOptions, progress, 40);
 ASSERT_OFFSET(GnomonBuildOptions, progress_user, 48);
 ASSERT_OFFSET(GnomonBuildOptions, compact, 56);
+ASSERT_OFFSET(GnomonBuildOptions, grid_cells_per_triangle, 60);
 
 ASSERT_SIZE(GnomonQueryOptions, 8);
 ASSERT_OFFSET(GnomonQueryOptions, struct_size, 0);

@@ -2,6 +2,8 @@
 
 use super::brute_force::BruteForce;
 use super::bvh::{BinnedSah, Bvh, Median};
+use super::grid::Grid;
+use super::octree::Octree;
 use super::reference::{PrimitiveSource, Reference, gather};
 use super::stats::Shape;
 use super::{BuildContext, BuildFailure, Primitive, Quality, Structure, WideBvh};
@@ -9,6 +11,8 @@ use crate::geometry::Aabb;
 
 pub(crate) enum AnyAccel<T: Primitive> {
     BruteForce(BruteForce<T>),
+    Grid(Grid<T>),
+    Octree(Octree<T>),
     Bvh(Bvh<T>),
     WideBvh(WideBvh<T::Leaves>),
     CompactWideBvh(WideBvh<T::CompactLeaves>),
@@ -18,6 +22,8 @@ impl<T: Primitive> AnyAccel<T> {
     pub(crate) fn shape(&self) -> Shape {
         match self {
             Self::BruteForce(brute_force) => brute_force.shape(),
+            Self::Grid(grid) => grid.shape(),
+            Self::Octree(octree) => octree.shape(),
             Self::Bvh(bvh) => bvh.shape(),
             Self::WideBvh(bvh) => bvh.shape(),
             Self::CompactWideBvh(bvh) => bvh.shape(),
@@ -40,30 +46,44 @@ pub(crate) fn choose(asked: Structure, primitive_count: usize) -> Structure {
 /// What the choice names that has no builder yet.
 pub(crate) fn unsupported(structure: Structure) -> Option<&'static str> {
     match structure {
-        Structure::Auto | Structure::BruteForce | Structure::Bvh | Structure::WideBvh => None,
-        Structure::Grid => Some("GNOMON_STRUCTURE_GRID, the uniform grid,"),
-        Structure::Octree => Some("GNOMON_STRUCTURE_OCTREE, the octree,"),
+        Structure::Auto | Structure::BruteForce | Structure::Grid | Structure::Octree => None,
+        Structure::Bvh | Structure::WideBvh => None,
         Structure::KdTree => Some("GNOMON_STRUCTURE_KD_TREE, the kd-tree,"),
         Structure::BspTree => Some("GNOMON_STRUCTURE_BSP_TREE, the BSP tree,"),
     }
 }
 
-/// Builds what [`choose`] made of a choice that is not [`unsupported`]. Only the wide BVH can be compact.
+/// What is to be built.
+#[derive(Clone, Copy)]
+pub(crate) struct Plan {
+    /// What [`choose`] made of a choice that is not [`unsupported`].
+    pub(crate) structure: Structure,
+    pub(crate) quality: Quality,
+    /// Only the wide BVH can be.
+    pub(crate) is_compact: bool,
+    /// 0: what suits the quality.
+    pub(crate) grid_cells_per_triangle: f32,
+}
+
+/// Builds what is planned.
 pub(crate) fn build<S: PrimitiveSource>(
-    structure: Structure,
-    quality: Quality,
-    is_compact: bool,
+    plan: Plan,
     references: Vec<Reference>,
     bounds: Aabb,
     source: &S,
     context: &BuildContext,
 ) -> Result<AnyAccel<S::Primitive>, BuildFailure> {
+    let Plan { structure, quality, is_compact, grid_cells_per_triangle } = plan;
     match (structure, quality) {
         (Structure::BruteForce, _) => {
             let primitives = gather(source, &references, context)?;
             context.release(references);
             BruteForce::build(primitives, context).map(AnyAccel::BruteForce)
         }
+        (Structure::Grid, _) => {
+            Grid::build(references, bounds, grid_cells_per_triangle, quality, source, context).map(AnyAccel::Grid)
+        }
+        (Structure::Octree, _) => Octree::build(references, bounds, quality, source, context).map(AnyAccel::Octree),
         (Structure::Bvh, Quality::Low) => {
             Bvh::build(references, bounds, &Median, quality, source, context).map(AnyAccel::Bvh)
         }

@@ -112,6 +112,17 @@ impl<'a> BuildContext<'a> {
         Ok(vector)
     }
 
+    /// Room for `additional` elements more, in a vector whose length nobody knows beforehand.
+    pub(crate) fn make_room<T>(&self, vector: &mut Vec<T>, additional: usize) -> Result<(), BuildFailure> {
+        let needed = vector.len() + additional;
+        if needed > vector.capacity() {
+            let mut larger = self.reserve(needed.max(2 * vector.capacity()))?;
+            larger.append(vector);
+            self.release(std::mem::replace(vector, larger));
+        }
+        Ok(())
+    }
+
     /// As [`BuildContext::reserve`], filled with copies of `value` by all threads, so that they share the page faults.
     pub(crate) fn filled<T: Copy + Send + Sync>(&self, count: usize, value: T) -> Result<Vec<T>, BuildFailure> {
         let mut vector = self.reserve(count)?;

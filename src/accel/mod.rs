@@ -1,10 +1,14 @@
 //! Structures that find a ray's hit without asking every triangle, one a module, and what they share.
 
+mod along_curve;
 mod any_accel;
 mod brute_force;
 mod build_context;
 mod bvh;
+mod grid;
 mod leaf;
+mod listed;
+mod octree;
 mod primitive;
 mod reference;
 mod stats;
@@ -12,7 +16,7 @@ mod tally;
 mod walk_ray;
 mod wide_bvh;
 
-pub(crate) use any_accel::{AnyAccel, build, choose, unsupported};
+pub(crate) use any_accel::{AnyAccel, Plan, build, choose, unsupported};
 pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
 pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Counted, Query};
 pub(crate) use primitive::{Primitive, Surface, SurfacePoint};

@@ -1,6 +1,6 @@
 //! What structures hold. All but the wide BVH are generic over it, so that a scene's kernels know only what it has.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::wide_bvh::{ByAxis, Compact, LeafForm, Spheres};
 use crate::geometry::{
@@ -84,6 +84,9 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
 
     /// The least box that contains it.
     fn bounds(&self) -> Aabb;
+
+    /// Whether it has a point in the closed box; may say so of one that passes within the rounding of `f64`.
+    fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool;
 }
 
 impl Primitive for Triangle {
@@ -126,6 +129,11 @@ impl Primitive for Triangle {
 
     fn bounds(&self) -> Aabb {
         Triangle::bounds(self)
+    }
+
+    #[inline(always)]
+    fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool {
+        Triangle::overlaps(self, lower, upper)
     }
 }
 
@@ -171,5 +179,9 @@ impl Primitive for Sphere {
 
     fn bounds(&self) -> Aabb {
         Sphere::bounds(self)
+    }
+
+    fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool {
+        Sphere::overlaps(self, lower, upper)
     }
 }

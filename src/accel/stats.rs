@@ -51,12 +51,12 @@ pub enum Precision {
 pub struct Stats {
     /// Triangles that were added, without the skipped ones.
     pub triangle_count: u64,
-    /// Nodes, leaves among them.
+    /// Nodes, leaves among them; the cells of a grid.
     pub node_count: u64,
-    /// Nodes without children.
+    /// Nodes without children; the cells of a grid.
     pub leaf_count: u64,
-    /// Triangles and spheres stored: not those of zero area or radius, which nothing hits, nor all of those that are the same to the bit and
-    /// that a BVH cannot tell apart.
+    /// Triangles and spheres stored: not those of zero area or radius, which nothing hits, nor all of those that are the
+    /// same to the bit and that a BVH cannot tell apart. Where leaves divide space, one counts in each that it overlaps.
     pub reference_count: u64,
     /// Triangles and spheres left out because they are invalid.
     pub skipped_count: u64,

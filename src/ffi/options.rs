@@ -12,9 +12,9 @@ use crate::simd::Isa;
 pub const GNOMON_STRUCTURE_AUTO: u32 = 0;
 /// Every triangle is asked: for a handful, and as a reference.
 pub const GNOMON_STRUCTURE_BRUTE_FORCE: u32 = 1;
-/// Uniform grid. Not built yet.
+/// Uniform grid: for triangles of one size, evenly spread.
 pub const GNOMON_STRUCTURE_GRID: u32 = 2;
-/// Octree. Not built yet.
+/// Octree: for scenes that are empty here and crowded there.
 pub const GNOMON_STRUCTURE_OCTREE: u32 = 3;
 /// kd-tree. Not built yet.
 pub const GNOMON_STRUCTURE_KD_TREE: u32 = 4;
@@ -27,10 +27,13 @@ pub const GNOMON_STRUCTURE_BVH: u32 = 6;
 pub const GNOMON_STRUCTURE_WIDE_BVH: u32 = 7;
 
 /// Fastest build. BVH: split at the median of the longest axis. WIDE_BVH: 8 bins and larger leaves.
+/// GRID: 2 cells a triangle. OCTREE: leaves of 16 triangles, where there are as many.
 pub const GNOMON_QUALITY_LOW: u32 = 0;
-/// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007).
+/// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007). GRID: 6 cells a
+/// triangle. OCTREE: leaves of 8.
 pub const GNOMON_QUALITY_MEDIUM: u32 = 1;
-/// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
+/// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018). GRID: 12
+/// cells a triangle. OCTREE: leaves of 6.
 pub const GNOMON_QUALITY_HIGH: u32 = 2;
 
 /// Decided in float, watertight; t, u and v come from what decided. For previews.
@@ -93,6 +96,10 @@ pub struct GnomonBuildOptions {
     /// slower, by up to a fifth; at most 44 million triangles. The answers are the same. 0, the default: it does
     /// not. No other structure is changed by it.
     pub compact: u32,
+    /// How many cells a GRID has for each triangle, roughly; fewer where its lists would take too much memory. 0, the
+    /// default: 2, 6 or 12 by quality. More make a difference where rays pass much that is empty; 27 is a number often
+    /// taught. No other structure is changed by it.
+    pub grid_cells_per_triangle: f32,
 }
 
 /// How to answer a batch. Fill it with `gnomon_query_options_init`, then change what you like.
@@ -125,6 +132,7 @@ impl GnomonBuildOptions {
         progress: None,
         progress_user: std::ptr::null_mut(),
         compact: 0,
+        grid_cells_per_triangle: 0.0,
     };
 
     /// The caller's options, or the defaults for NULL.
@@ -170,6 +178,13 @@ impl GnomonBuildOptions {
                 0 => false,
                 1 => true,
                 other => return Err(unknown("compact", other)),
+            },
+            grid_cells_per_triangle: match self.grid_cells_per_triangle {
+                cells if cells >= 0.0 && cells.is_finite() => cells,
+                other => {
+                    let told = format!("grid_cells_per_triangle is {other}, not 0 or a finite number above it");
+                    return Err(Failure::invalid(told));
+                }
             },
         })
     }

@@ -121,12 +121,12 @@ pub struct GnomonSpheres {
 pub struct GnomonSceneStats {
     /// Triangles that were added, without the skipped ones.
     pub triangle_count: u64,
-    /// Nodes, leaves among them; 0 for brute force.
+    /// Nodes, leaves among them; the cells of a grid; 0 for brute force.
     pub node_count: u64,
-    /// Nodes without children.
+    /// Nodes without children; the cells of a grid.
     pub leaf_count: u64,
-    /// Triangles and spheres stored in leaves: not those of zero area or radius, which nothing hits, nor copies (equal to the bit) that a BVH cannot
-    /// tell apart.
+    /// Triangles and spheres stored in leaves: not those of zero area or radius, which nothing hits, nor copies (equal to the
+    /// bit) that a BVH cannot tell apart. Where leaves divide space, one counts in each that it overlaps.
     pub reference_count: u64,
     /// Triangles and spheres left out by `GNOMON_INVALID_SKIP`.
     pub skipped_count: u64,

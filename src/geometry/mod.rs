@@ -4,6 +4,7 @@ mod aabb;
 mod evaluation;
 mod evaluation_lanes;
 mod mesh_view;
+mod overlap;
 mod ray;
 mod sphere;
 mod triangle;

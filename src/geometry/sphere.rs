@@ -60,6 +60,20 @@ impl Sphere {
         Aabb { lower: Vec3::from_array(below), upper: Vec3::from_array(above) }
     }
 
+    /// Whether the surface has a point in the closed box; may say so of one that passes within a rounding.
+    ///
+    /// It has where the box's nearest point to the centre is no further than the radius and its farthest no nearer. Squares
+    /// of distances make six roundings.
+    pub(crate) fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool {
+        let centre = DVec3::from_array(self.centre.map(f64::from));
+        let (below, above) = (lower - centre, centre - upper);
+        let nearest = below.max(above).max(DVec3::ZERO).length_squared();
+        let farthest = below.abs().max(above.abs()).length_squared();
+        let square = f64::from(self.radius) * f64::from(self.radius);
+        let error = 8.0 * E * (farthest + square);
+        nearest <= square + error && farthest >= square - error
+    }
+
     /// From the centre to the hit: as long as the radius, outward on either side.
     pub(crate) fn normal_at(&self, ray: &Ray, t: f32) -> Vec3 {
         let from_centre = ray.origin.as_dvec3() - Vec3::from_array(self.centre).as_dvec3();
@@ -267,6 +281,17 @@ mod tests {
             check(&sphere, on_surface, on_surface + tangent * sphere.radius)?;
             check(&sphere, on_surface, Vec3::from_array(along))?;
         }
+    }
+
+    #[test]
+    fn surface_overlaps_the_boxes_that_it_passes_through() {
+        let sphere = Sphere { centre: [1.0, 0.0, 0.0], radius: 2.0, geometry_id: 0, primitive_id: 0 };
+        let overlaps = |lower: [f64; 3], upper: [f64; 3]| sphere.overlaps(lower.into(), upper.into());
+        assert!(overlaps([2.5, -0.1, -0.1], [3.5, 0.1, 0.1]), "across");
+        assert!(overlaps([3.0, 0.0, 0.0], [4.0, 1.0, 1.0]), "touched from outside");
+        assert!(overlaps([-9.0; 3], [9.0; 3]), "around");
+        assert!(!overlaps([0.5, -0.5, -0.5], [1.5, 0.5, 0.5]), "inside");
+        assert!(!overlaps([2.2, 1.7, 0.0], [3.0, 2.0, 1.0]), "beside, in the corner of its box");
     }
 
     #[test]

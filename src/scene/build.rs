@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 use super::builder::Geometry;
 use super::flatten::{Balls, Flat, Meshes, flatten};
 use super::{BuildError, BuildOptions, Content, Scene, threads};
-use crate::accel::{self, AnyAccel, BuildContext, Precision, PrimitiveSource, Shape, Stats, Structure, Watch};
+use crate::accel::{self, AnyAccel, BuildContext, Plan, Precision, PrimitiveSource, Shape, Stats, Structure, Watch};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
@@ -43,15 +43,21 @@ fn build_with(
     let (skipped_triangles, skipped_spheres) = (of_meshes.skipped_count, of_balls.skipped_count);
     let (has_triangles, has_spheres) = (!of_meshes.references.is_empty(), !of_balls.references.is_empty());
     let structure = accel::choose(options.structure, of_meshes.references.len() + of_balls.references.len());
+    let plan = Plan {
+        structure,
+        quality: options.quality,
+        is_compact: options.is_compact,
+        grid_cells_per_triangle: options.grid_cells_per_triangle,
+    };
     let mut shapes = ArrayVec::<Shape, 2>::new();
     let content = if has_spheres && has_triangles {
-        let triangles = build_part(structure, of_meshes, &meshes, options, context, &mut shapes)?;
-        let spheres = build_part(structure, of_balls, &balls, options, context, &mut shapes)?;
+        let triangles = build_part(plan, of_meshes, &meshes, context, &mut shapes)?;
+        let spheres = build_part(plan, of_balls, &balls, context, &mut shapes)?;
         Content::Both(Box::new((triangles, spheres)))
     } else if has_spheres {
-        Content::Spheres(build_part(structure, of_balls, &balls, options, context, &mut shapes)?)
+        Content::Spheres(build_part(plan, of_balls, &balls, context, &mut shapes)?)
     } else {
-        Content::Triangles(build_part(structure, of_meshes, &meshes, options, context, &mut shapes)?)
+        Content::Triangles(build_part(plan, of_meshes, &meshes, context, &mut shapes)?)
     };
     let total = |of: fn(&Shape) -> usize| shapes.iter().map(of).sum::<usize>() as u64;
     // Only the wide BVH has kernels beyond the scalar one.
@@ -80,15 +86,13 @@ fn build_with(
 
 /// One kind's structure; its shape is appended to `shapes`.
 fn build_part<S: PrimitiveSource>(
-    structure: Structure,
-    flat: Flat,
+    plan: Plan,
+    Flat { references, bounds, .. }: Flat,
     source: &S,
-    options: &BuildOptions,
     context: &BuildContext,
     shapes: &mut ArrayVec<Shape, 2>,
 ) -> Result<AnyAccel<S::Primitive>, BuildError> {
-    let Flat { references, bounds, .. } = flat;
-    let accel = accel::build(structure, options.quality, options.is_compact, references, bounds, source, context)?;
+    let accel = accel::build(plan, references, bounds, source, context)?;
     shapes.push(accel.shape());
     Ok(accel)
 }

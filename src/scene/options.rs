@@ -33,4 +33,6 @@ pub struct BuildOptions {
     /// Whether a wide BVH stores each vertex of a leaf once: a third less memory, somewhat slower queries, the same
     /// answers.
     pub is_compact: bool,
+    /// How many cells a grid has for each triangle, roughly; 0 or less, or NaN: what suits the quality.
+    pub grid_cells_per_triangle: f32,
 }

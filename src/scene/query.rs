@@ -64,6 +64,8 @@ impl Scene {
     pub(super) fn dispatch_to<K: Kernel, T: Primitive>(&self, kernel: K, accel: &AnyAccel<T>) -> K::Output {
         match accel {
             AnyAccel::BruteForce(brute_force) => self.dispatch_apart(kernel, brute_force),
+            AnyAccel::Grid(grid) => self.dispatch_apart(kernel, grid),
+            AnyAccel::Octree(octree) => self.dispatch_apart(kernel, octree),
             AnyAccel::Bvh(bvh) => self.dispatch_apart(kernel, bvh),
             AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
             AnyAccel::CompactWideBvh(bvh) => self.dispatch_isa(kernel, bvh),

@@ -163,6 +163,27 @@ fn duplicates(rng: &mut Rng) -> Mesh {
     mesh
 }
 
+/// Triangles of [`on_cell_walls`], zero area or not.
+const WALL_TRIANGLES: usize = 512;
+/// With so many cells for each triangle that is hit, a grid has 16 along each axis.
+pub(crate) const CELLS_ON_WALLS: f32 = 4096.0 / WALL_TRIANGLES as f32;
+
+/// Corners at multiples of 1/16 of a cube: on the walls of a grid of 16 cells along each axis, and of an octree.
+fn on_cell_walls(rng: &mut Rng) -> Mesh {
+    let mut on_wall = |most: usize| rng.below(most + 1) as f32 / 16.0;
+    let mut corners: Vec<Vec3> = Vec::new();
+    while corners.len() < 3 * WALL_TRIANGLES {
+        let lower = Vec3::from_array([0; 3].map(|_| on_wall(13)));
+        let triangle = [0; 3].map(|_| lower + Vec3::from_array([0; 3].map(|_| on_wall(3))));
+        if (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]) != Vec3::ZERO {
+            corners.extend(triangle);
+        }
+    }
+    // So that the scene is all of the cube.
+    (corners[0], corners[3]) = (Vec3::ZERO, Vec3::ONE);
+    Mesh::from_soup("on cell walls", corners)
+}
+
 pub(crate) fn meshes() -> Vec<Mesh> {
     let mut rng = Rng::new(1);
     vec![
@@ -179,6 +200,7 @@ pub(crate) fn meshes() -> Vec<Mesh> {
         soup(&mut rng, 400, 0.5).mapped("in a plane", |v| Vec3::new(v.x, 0.5, v.z)),
         Mesh::from_soup("spheres", Vec::new()).with_spheres("spheres", spheres(&mut rng, 500, 0.3)),
         soup(&mut rng, 400, 0.2).with_spheres("triangles and spheres", spheres(&mut rng, 300, 0.3)),
+        on_cell_walls(&mut rng),
     ]
 }
 
@@ -191,6 +213,19 @@ pub(crate) fn rays_for(mesh: &Mesh, rng: &mut Rng) -> Vec<Ray> {
     let (centre, half) = (lower * 0.5 + upper * 0.5, upper * 0.5 - lower * 0.5);
     let scale = half.max_element();
     let mut rays = Vec::new();
+    // Between points of the walls that halving an axis four times makes: at corners of cells, along and in walls.
+    for round in 0..200 {
+        let mut on_wall = || lower + 2.0 * half * Vec3::from_array([0; 3].map(|_| rng.below(17) as f32 / 16.0));
+        let (origin, mut target) = (on_wall(), on_wall());
+        for axis in 0..round % 3 {
+            target[axis] = origin[axis];
+        }
+        let direction = target - origin;
+        for distance in [0.0, 1e3, 1e5, 1e7] {
+            let origin = origin - distance * direction;
+            rays.push(Ray { origin, t_min: f32::NEG_INFINITY, direction, t_max: f32::INFINITY });
+        }
+    }
     for round in 0..1200 {
         let primitive = rng.below(mesh.triangles.len() + mesh.spheres.len());
         let corners = match mesh.triangles.get(primitive) {

@@ -1,0 +1,89 @@
+//! Primitives in the order of a space-filling curve, each once: for structures that list them by number.
+
+use rayon::prelude::*;
+
+use super::reference::{PrimitiveSource, Reference};
+use super::{BuildContext, BuildFailure, Primitive};
+use crate::geometry::Aabb;
+
+/// Bits of a Morton code for each axis.
+const BITS: u32 = 11;
+
+/// Where a reference comes on the curve, and what it is at that place.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Place {
+    /// The Morton code of the box's centre, and a hash of the box that is the same for primitives of the same shape.
+    key: u64,
+    /// In the order in which equal hits win.
+    index: u32,
+}
+
+/// Of primitives that are the same to the bit the one whose hits win, all in Morton order (Morton 1966), so that what is
+/// near in space is near in memory. References come in the order of their ids.
+pub(super) fn gather_along_curve<S: PrimitiveSource>(
+    references: Vec<Reference>,
+    bounds: &Aabb,
+    source: &S,
+    context: &BuildContext,
+) -> Result<Vec<S::Primitive>, BuildFailure> {
+    let count = references.len();
+    let curve = Curve::new(bounds);
+    let mut places: Vec<Place> = context.reserve(count)?;
+    context.collect_with(
+        &mut places,
+        count as u32,
+        |_| (),
+        |(), index| Place { key: curve.key(&references[index as usize]), index },
+    );
+    if context.is_parallel() {
+        places.par_sort_unstable();
+    } else {
+        places.sort_unstable();
+    }
+    context.advance(count)?;
+
+    let shape = |place: &Place| references[place.index as usize].primitive(source).shape();
+    places.dedup_by(|next, kept| next.key == kept.key && shape(next) == shape(kept));
+    let mut primitives = context.reserve(places.len())?;
+    let primitive = |(): &mut (), at: u32| references[places[at as usize].index as usize].primitive(source);
+    context.collect_with(&mut primitives, places.len() as u32, |_| (), primitive);
+    context.release(places);
+    context.release(references);
+    Ok(primitives)
+}
+
+/// Numbers places of a box along it.
+struct Curve {
+    doubled_lower: [f64; 3],
+    /// How many of the curve's cells there are for each doubled length.
+    per_length: f64,
+}
+
+impl Curve {
+    fn new(bounds: &Aabb) -> Self {
+        let (lower, upper) = (bounds.lower.as_dvec3(), bounds.upper.as_dvec3());
+        let most = f64::from((1u32 << BITS) - 1);
+        Self { doubled_lower: (2.0 * lower).to_array(), per_length: most / (2.0 * (upper - lower).max_element()) }
+    }
+
+    fn key(&self, reference: &Reference) -> u64 {
+        let bounds = reference.bounds();
+        let doubled_centre = bounds.doubled_centre().to_array();
+        let axis = |axis: usize| {
+            spread(((f64::from(doubled_centre[axis]) - self.doubled_lower[axis]) * self.per_length) as u32)
+        };
+        let code = axis(0) | axis(1) << 1 | axis(2) << 2;
+        let Aabb { lower, upper } = bounds.to_aabb();
+        let hash = [lower, upper].iter().flat_map(|corner| corner.to_array()).fold(0, |hash: u32, coordinate| {
+            // FNV-1a, a word at a time; of two zeros the positive one.
+            (hash ^ (coordinate + 0.0).to_bits()).wrapping_mul(0x0100_0193).rotate_left(15)
+        });
+        code << (64 - 3 * BITS) | u64::from(hash >> (3 * BITS - 32))
+    }
+}
+
+/// Two zeros after each of the lowest bits.
+fn spread(number: u32) -> u64 {
+    let number = u64::from(number.min((1 << BITS) - 1));
+    (0..BITS).fold(0, |spread, bit| spread | (number >> bit & 1) << (3 * bit))
+}
