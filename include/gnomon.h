@@ -78,10 +78,10 @@
 // Octree. Not built yet.
 #define GNOMON_STRUCTURE_OCTREE 3u
 
-// kd-tree. Not built yet.
+// kd-tree: planes across the axes, each triangle in the leaves that it reaches into. At most 2^28 - 1 triangles.
 #define GNOMON_STRUCTURE_KD_TREE 4u
 
-// BSP tree. Not built yet.
+// BSP tree: planes of 13 fixed directions and of the triangles themselves. Slow to build. At most 2^28 - 1 triangles.
 #define GNOMON_STRUCTURE_BSP_TREE 5u
 
 // Binary bounding volume hierarchy.
@@ -91,13 +91,16 @@
 // and smallest here. At most 2^28 triangles.
 #define GNOMON_STRUCTURE_WIDE_BVH 7u
 
-// Fastest build. BVH: split at the median of the longest axis. WIDE_BVH: 8 bins and larger leaves.
+// Fastest build. BVH: split at the median of the longest axis. KD_TREE: at the median, the axes in turn. BSP_TREE: the
+// fixed directions alone. WIDE_BVH: 8 bins and larger leaves.
 #define GNOMON_QUALITY_LOW 0u
 
-// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007).
+// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007). KD_TREE: the same over clipped triangles
+// (Wald and Havran 2006). BSP_TREE: the same over all its planes (Ize, Wald, Parker 2008).
 #define GNOMON_QUALITY_MEDIUM 1u
 
-// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
+// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018). KD_TREE and
+// BSP_TREE: as MEDIUM.
 #define GNOMON_QUALITY_HIGH 2u
 
 // Decided in float, watertight; t, u and v come from what decided. For previews.
@@ -214,8 +217,8 @@ typedef struct GnomonSceneStats {
     uint64_t node_count;
     // Nodes without children.
     uint64_t leaf_count;
-    // Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a BVH cannot
-    // tell apart.
+    // Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a structure
+    // cannot tell apart. Of trees that divide space, as often as leaves list them.
     uint64_t reference_count;
     // Triangles left out by `GNOMON_INVALID_SKIP`.
     uint64_t skipped_count;

@@ -9,6 +9,8 @@ namespace harness {
 const std::vector<Named> kStructures{
     {"auto", GNOMON_STRUCTURE_AUTO},
     {"brute_force", GNOMON_STRUCTURE_BRUTE_FORCE},
+    {"kd_tree", GNOMON_STRUCTURE_KD_TREE},
+    {"bsp_tree", GNOMON_STRUCTURE_BSP_TREE},
     {"bvh", GNOMON_STRUCTURE_BVH},
     {"wide_bvh", GNOMON_STRUCTURE_WIDE_BVH},
 };
@@ -24,8 +26,6 @@ const std::vector<Named> kPrecisions{
 const std::vector<Unbuilt> kUnbuilt{
     {"GNOMON_STRUCTURE_GRID", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_GRID},
     {"GNOMON_STRUCTURE_OCTREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_OCTREE},
-    {"GNOMON_STRUCTURE_KD_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_KD_TREE},
-    {"GNOMON_STRUCTURE_BSP_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_BSP_TREE},
     {"GNOMON_PRECISION_EXACT", &GnomonBuildOptions::precision, GNOMON_PRECISION_EXACT},
 };
 const std::vector<Named> kIsas{

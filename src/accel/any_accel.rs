@@ -1,7 +1,9 @@
 //! The structures as one type, matched once a call: a new one cannot be forgotten.
 
 use super::brute_force::BruteForce;
+use super::bsp_tree::BspTree;
 use super::bvh::{BinnedSah, Bvh, Median};
+use super::kd_tree::KdTree;
 use super::reference::{Reference, TriangleSource, gather};
 use super::stats::Shape;
 use super::{BuildContext, BuildFailure, Compact, Quality, Structure, WideBvh};
@@ -9,6 +11,8 @@ use crate::geometry::{Aabb, Triangle};
 
 pub(crate) enum AnyAccel {
     BruteForce(BruteForce<Triangle>),
+    KdTree(KdTree<Triangle>),
+    BspTree(BspTree<Triangle>),
     Bvh(Bvh<Triangle>),
     WideBvh(WideBvh),
     CompactWideBvh(WideBvh<Compact>),
@@ -18,6 +22,8 @@ impl AnyAccel {
     pub(crate) fn shape(&self) -> Shape {
         match self {
             Self::BruteForce(brute_force) => brute_force.shape(),
+            Self::KdTree(tree) => tree.shape(),
+            Self::BspTree(tree) => tree.shape(),
             Self::Bvh(bvh) => bvh.shape(),
             Self::WideBvh(bvh) => bvh.shape(),
             Self::CompactWideBvh(bvh) => bvh.shape(),
@@ -40,11 +46,14 @@ pub(crate) fn choose(asked: Structure, triangle_count: usize) -> Structure {
 /// What the choice names that has no builder yet.
 pub(crate) fn unsupported(structure: Structure) -> Option<&'static str> {
     match structure {
-        Structure::Auto | Structure::BruteForce | Structure::Bvh | Structure::WideBvh => None,
+        Structure::Auto
+        | Structure::BruteForce
+        | Structure::KdTree
+        | Structure::BspTree
+        | Structure::Bvh
+        | Structure::WideBvh => None,
         Structure::Grid => Some("GNOMON_STRUCTURE_GRID, the uniform grid,"),
         Structure::Octree => Some("GNOMON_STRUCTURE_OCTREE, the octree,"),
-        Structure::KdTree => Some("GNOMON_STRUCTURE_KD_TREE, the kd-tree,"),
-        Structure::BspTree => Some("GNOMON_STRUCTURE_BSP_TREE, the BSP tree,"),
     }
 }
 
@@ -64,6 +73,8 @@ pub(crate) fn build(
             context.release(references);
             BruteForce::build(primitives, context).map(AnyAccel::BruteForce)
         }
+        (Structure::KdTree, _) => KdTree::build(references, bounds, quality, source, context).map(AnyAccel::KdTree),
+        (Structure::BspTree, _) => BspTree::build(references, bounds, quality, source, context).map(AnyAccel::BspTree),
         (Structure::Bvh, Quality::Low) => {
             Bvh::build(references, bounds, &Median, quality, source, context).map(AnyAccel::Bvh)
         }

@@ -2,11 +2,14 @@
 
 mod any_accel;
 mod brute_force;
+mod bsp_tree;
 mod build_context;
 mod bvh;
+mod kd_tree;
 mod leaf;
 mod primitive;
 mod reference;
+mod space_tree;
 mod stats;
 mod tally;
 mod walk_ray;
@@ -15,7 +18,7 @@ mod wide_bvh;
 pub(crate) use any_accel::{AnyAccel, build, choose, unsupported};
 pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
 pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Counted, Query};
-pub(crate) use primitive::{Primitive, Surface};
+pub(crate) use primitive::{Part, Primitive, Surface};
 pub(crate) use reference::{Bounds8, PrimitiveSource, Reference};
 pub use stats::{Precision, Quality, Stats, Structure};
 pub use tally::RayCounts;

@@ -1,8 +1,8 @@
 //! What structures hold. All but the wide BVH are generic over it, so that a scene's kernels know only what it has.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
-use crate::geometry::{Aabb, INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
+use crate::geometry::{Aabb, INVALID_ID, Interval, Polygon, PrecisionMode, Ray, Triangle, TriangleHit, TriangleRay};
 
 /// What a hit tells about what it hit.
 pub(crate) trait Surface {
@@ -22,6 +22,35 @@ impl Surface for Triangle {
     #[inline(always)]
     fn normal(&self) -> Vec3 {
         Triangle::normal(self)
+    }
+}
+
+/// What planes leave of a primitive, or a little more than that. Heights are affine functions, and computed in `f64`.
+pub(crate) trait Part: Copy + Send + Sync {
+    /// Where `height` is not positive; `None` where there is no point of it.
+    fn below(&self, height: impl Fn(DVec3) -> f64) -> Option<Self>;
+
+    /// The least and the greatest height.
+    fn extent(&self, height: impl Fn(DVec3) -> f64) -> (f64, f64);
+
+    /// The least and the greatest coordinates.
+    fn bounds(&self) -> (DVec3, DVec3);
+}
+
+impl Part for Polygon {
+    #[inline(always)]
+    fn below(&self, height: impl Fn(DVec3) -> f64) -> Option<Self> {
+        Polygon::below(self, height)
+    }
+
+    #[inline(always)]
+    fn extent(&self, height: impl Fn(DVec3) -> f64) -> (f64, f64) {
+        Polygon::extent(self, height)
+    }
+
+    #[inline(always)]
+    fn bounds(&self) -> (DVec3, DVec3) {
+        Polygon::bounds(self)
     }
 }
 
@@ -50,6 +79,15 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
 
     /// The least box that contains it.
     fn bounds(&self) -> Aabb;
+
+    /// What planes can leave of it.
+    type Part: Part;
+
+    /// All of it.
+    fn whole(&self) -> Self::Part;
+
+    /// A plane that it lies in, as a normal of any length but 0, where there is one.
+    fn plane_normal(&self) -> Option<DVec3>;
 }
 
 impl Primitive for Triangle {
@@ -79,5 +117,17 @@ impl Primitive for Triangle {
 
     fn bounds(&self) -> Aabb {
         Triangle::bounds(self)
+    }
+
+    type Part = Polygon;
+
+    #[inline(always)]
+    fn whole(&self) -> Polygon {
+        Polygon::of(self)
+    }
+
+    fn plane_normal(&self) -> Option<DVec3> {
+        let normal = self.whole().doubled_area();
+        (normal != DVec3::ZERO).then_some(normal)
     }
 }

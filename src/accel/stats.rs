@@ -56,7 +56,7 @@ pub struct Stats {
     /// Nodes without children.
     pub leaf_count: u64,
     /// Triangles stored: not those of zero area, which nothing hits, nor all of those that are the same to the bit and
-    /// that a BVH cannot tell apart.
+    /// that a structure cannot tell apart. Where cells divide space, as often as they are listed.
     pub reference_count: u64,
     /// Triangles left out because a coordinate is not finite.
     pub skipped_count: u64,

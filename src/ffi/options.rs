@@ -16,9 +16,9 @@ pub const GNOMON_STRUCTURE_BRUTE_FORCE: u32 = 1;
 pub const GNOMON_STRUCTURE_GRID: u32 = 2;
 /// Octree. Not built yet.
 pub const GNOMON_STRUCTURE_OCTREE: u32 = 3;
-/// kd-tree. Not built yet.
+/// kd-tree: planes across the axes, each triangle in the leaves that it reaches into. At most 2^28 - 1 triangles.
 pub const GNOMON_STRUCTURE_KD_TREE: u32 = 4;
-/// BSP tree. Not built yet.
+/// BSP tree: planes of 13 fixed directions and of the triangles themselves. Slow to build. At most 2^28 - 1 triangles.
 pub const GNOMON_STRUCTURE_BSP_TREE: u32 = 5;
 /// Binary bounding volume hierarchy.
 pub const GNOMON_STRUCTURE_BVH: u32 = 6;
@@ -26,11 +26,14 @@ pub const GNOMON_STRUCTURE_BVH: u32 = 6;
 /// and smallest here. At most 2^28 triangles.
 pub const GNOMON_STRUCTURE_WIDE_BVH: u32 = 7;
 
-/// Fastest build. BVH: split at the median of the longest axis. WIDE_BVH: 8 bins and larger leaves.
+/// Fastest build. BVH: split at the median of the longest axis. KD_TREE: at the median, the axes in turn. BSP_TREE: the
+/// fixed directions alone. WIDE_BVH: 8 bins and larger leaves.
 pub const GNOMON_QUALITY_LOW: u32 = 0;
-/// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007).
+/// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007). KD_TREE: the same over clipped triangles
+/// (Wald and Havran 2006). BSP_TREE: the same over all its planes (Ize, Wald, Parker 2008).
 pub const GNOMON_QUALITY_MEDIUM: u32 = 1;
-/// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
+/// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018). KD_TREE and
+/// BSP_TREE: as MEDIUM.
 pub const GNOMON_QUALITY_HIGH: u32 = 2;
 
 /// Decided in float, watertight; t, u and v come from what decided. For previews.

@@ -104,8 +104,8 @@ pub struct GnomonSceneStats {
     pub node_count: u64,
     /// Nodes without children.
     pub leaf_count: u64,
-    /// Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a BVH cannot
-    /// tell apart.
+    /// Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a structure
+    /// cannot tell apart. Of trees that divide space, as often as leaves list them.
     pub reference_count: u64,
     /// Triangles left out by `GNOMON_INVALID_SKIP`.
     pub skipped_count: u64,

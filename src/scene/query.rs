@@ -41,6 +41,8 @@ impl Scene {
     pub(super) fn dispatch<K: Kernel>(&self, kernel: K) -> K::Output {
         match &self.accel {
             AnyAccel::BruteForce(brute_force) => self.dispatch_apart(kernel, brute_force),
+            AnyAccel::KdTree(tree) => self.dispatch_apart(kernel, tree),
+            AnyAccel::BspTree(tree) => self.dispatch_apart(kernel, tree),
             AnyAccel::Bvh(bvh) => self.dispatch_apart(kernel, bvh),
             AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
             AnyAccel::CompactWideBvh(bvh) => self.dispatch_isa(kernel, bvh),
