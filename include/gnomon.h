@@ -78,10 +78,10 @@
 // Octree: for scenes that are empty here and crowded there.
 #define GNOMON_STRUCTURE_OCTREE 3u
 
-// kd-tree. Not built yet.
+// kd-tree: planes across the axes, each triangle in the leaves that it reaches into. At most 2^28 - 1 triangles.
 #define GNOMON_STRUCTURE_KD_TREE 4u
 
-// BSP tree. Not built yet.
+// BSP tree: planes of 13 fixed directions and of the triangles themselves. Slow to build. At most 2^28 - 1 triangles.
 #define GNOMON_STRUCTURE_BSP_TREE 5u
 
 // Binary bounding volume hierarchy.

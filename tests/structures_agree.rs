@@ -19,7 +19,9 @@ fn build(mesh: &Mesh, options: BuildOptions) -> Scene {
 fn variants() -> Vec<BuildOptions> {
     let of = |structure, quality, isa| BuildOptions { structure, quality, isa, ..BuildOptions::default() };
     let qualities = [Quality::Low, Quality::Medium, Quality::High];
-    let binary = qualities.map(|quality| of(Structure::Bvh, quality, Isa::Auto));
+    let scalar = [Structure::Bvh, Structure::KdTree, Structure::BspTree]
+        .into_iter()
+        .flat_map(|structure| qualities.map(|quality| of(structure, quality, Isa::Auto)));
     let wide = [Isa::Scalar, Isa::Sse42, Isa::Avx2, Isa::Avx512]
         .into_iter()
         .flat_map(|isa| qualities.map(|quality| of(Structure::WideBvh, quality, isa)));
@@ -30,7 +32,7 @@ fn variants() -> Vec<BuildOptions> {
     let grids = [1e-6, CELLS_ON_WALLS, 300.0]
         .map(|grid_cells_per_triangle| BuildOptions { grid_cells_per_triangle, ..grid[0] });
     let octree = qualities.map(|quality| of(Structure::Octree, quality, Isa::Auto));
-    binary.into_iter().chain(wide.iter().copied()).chain(compact).chain(grid).chain(grids).chain(octree).collect()
+    scalar.chain(wide.iter().copied()).chain(compact).chain(grid).chain(grids).chain(octree).collect()
 }
 
 /// Floats as bits, so that -0 and 0 differ, and a NaN would be seen.
@@ -241,7 +243,7 @@ fn counts_are_within_what_the_structure_has() {
                 let what = format!("{} {variant:?}: {counts:?}; {}", mesh.name, hexadecimal(&ray));
                 assert_eq!(counts, scene.intersect_counted(&ray).1, "{what}");
                 // A cell counts as a leaf, and is passed once at most.
-                let has_cells = variant.structure == Structure::Grid;
+                let has_cells = matches!(variant.structure, Structure::Grid | Structure::KdTree | Structure::BspTree);
                 assert!(u64::from(counts.cells_stepped) <= u64::from(has_cells) * stats.leaf_count, "{what}");
                 assert!(nodes <= inner_node_count && primitives <= stats.reference_count, "{what}");
                 assert!(primitives >= u64::from(hit.is_hit()), "{what}");

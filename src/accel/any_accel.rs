@@ -1,8 +1,10 @@
 //! The structures as one type, matched once a call: a new one cannot be forgotten.
 
 use super::brute_force::BruteForce;
+use super::bsp_tree::BspTree;
 use super::bvh::{BinnedSah, Bvh, Median};
 use super::grid::Grid;
+use super::kd_tree::KdTree;
 use super::octree::Octree;
 use super::reference::{PrimitiveSource, Reference, gather};
 use super::stats::Shape;
@@ -13,6 +15,8 @@ pub(crate) enum AnyAccel<T: Primitive> {
     BruteForce(BruteForce<T>),
     Grid(Grid<T>),
     Octree(Octree<T>),
+    KdTree(KdTree<T>),
+    BspTree(BspTree<T>),
     Bvh(Bvh<T>),
     WideBvh(WideBvh<T::Leaves>),
     CompactWideBvh(WideBvh<T::CompactLeaves>),
@@ -24,6 +28,8 @@ impl<T: Primitive> AnyAccel<T> {
             Self::BruteForce(brute_force) => brute_force.shape(),
             Self::Grid(grid) => grid.shape(),
             Self::Octree(octree) => octree.shape(),
+            Self::KdTree(tree) => tree.shape(),
+            Self::BspTree(tree) => tree.shape(),
             Self::Bvh(bvh) => bvh.shape(),
             Self::WideBvh(bvh) => bvh.shape(),
             Self::CompactWideBvh(bvh) => bvh.shape(),
@@ -43,20 +49,10 @@ pub(crate) fn choose(asked: Structure, primitive_count: usize) -> Structure {
     }
 }
 
-/// What the choice names that has no builder yet.
-pub(crate) fn unsupported(structure: Structure) -> Option<&'static str> {
-    match structure {
-        Structure::Auto | Structure::BruteForce | Structure::Grid | Structure::Octree => None,
-        Structure::Bvh | Structure::WideBvh => None,
-        Structure::KdTree => Some("GNOMON_STRUCTURE_KD_TREE, the kd-tree,"),
-        Structure::BspTree => Some("GNOMON_STRUCTURE_BSP_TREE, the BSP tree,"),
-    }
-}
-
 /// What is to be built.
 #[derive(Clone, Copy)]
 pub(crate) struct Plan {
-    /// What [`choose`] made of a choice that is not [`unsupported`].
+    /// What [`choose`] made of a choice.
     pub(crate) structure: Structure,
     pub(crate) quality: Quality,
     /// Only the wide BVH can be.
@@ -84,6 +80,8 @@ pub(crate) fn build<S: PrimitiveSource>(
             Grid::build(references, bounds, grid_cells_per_triangle, quality, source, context).map(AnyAccel::Grid)
         }
         (Structure::Octree, _) => Octree::build(references, bounds, quality, source, context).map(AnyAccel::Octree),
+        (Structure::KdTree, _) => KdTree::build(references, bounds, quality, source, context).map(AnyAccel::KdTree),
+        (Structure::BspTree, _) => BspTree::build(references, bounds, quality, source, context).map(AnyAccel::BspTree),
         (Structure::Bvh, Quality::Low) => {
             Bvh::build(references, bounds, &Median, quality, source, context).map(AnyAccel::Bvh)
         }

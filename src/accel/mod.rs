@@ -3,23 +3,26 @@
 mod along_curve;
 mod any_accel;
 mod brute_force;
+mod bsp_tree;
 mod build_context;
 mod bvh;
 mod grid;
+mod kd_tree;
 mod leaf;
 mod listed;
 mod octree;
 mod primitive;
 mod reference;
+mod space_tree;
 mod stats;
 mod tally;
 mod walk_ray;
 mod wide_bvh;
 
-pub(crate) use any_accel::{AnyAccel, Plan, build, choose, unsupported};
+pub(crate) use any_accel::{AnyAccel, Plan, build, choose};
 pub(crate) use build_context::{BuildContext, BuildFailure, Watch};
 pub(crate) use leaf::{AnyHit, Closest, ClosestHit, Counted, Query};
-pub(crate) use primitive::{Primitive, Surface, SurfacePoint};
+pub(crate) use primitive::{Part, Primitive, Surface, SurfacePoint};
 pub(crate) use reference::{Bounds8, PrimitiveSource, Reference};
 pub(crate) use stats::Shape;
 pub use stats::{Precision, Quality, Stats, Structure};

@@ -4,7 +4,8 @@ use glam::{DVec3, Vec3};
 
 use super::wide_bvh::{ByAxis, Compact, LeafForm, Spheres};
 use crate::geometry::{
-    Aabb, INVALID_ID, Interval, PrecisionMode, Ray, Sphere, SphereRay, Triangle, TriangleHit, TriangleRay,
+    Aabb, INVALID_ID, Interval, Polygon, PrecisionMode, Ray, Sphere, SpherePart, SphereRay, Triangle, TriangleHit,
+    TriangleRay,
 };
 
 /// What a hit tells about what it hit.
@@ -48,6 +49,49 @@ impl Surface for Triangle {
     }
 }
 
+/// What planes leave of a primitive, or a little more than that. Heights are affine functions, and computed in `f64`.
+pub(crate) trait Part: Copy + Send + Sync {
+    /// Where `height` is not positive; `None` where there is no point of it.
+    fn below(&self, height: impl Fn(DVec3) -> f64) -> Option<Self>;
+
+    /// The least and the greatest height.
+    fn extent(&self, height: impl Fn(DVec3) -> f64) -> (f64, f64);
+
+    /// The least and the greatest coordinates.
+    fn bounds(&self) -> (DVec3, DVec3);
+}
+
+impl Part for Polygon {
+    #[inline(always)]
+    fn below(&self, height: impl Fn(DVec3) -> f64) -> Option<Self> {
+        Polygon::below(self, height)
+    }
+
+    #[inline(always)]
+    fn extent(&self, height: impl Fn(DVec3) -> f64) -> (f64, f64) {
+        Polygon::extent(self, height)
+    }
+
+    #[inline(always)]
+    fn bounds(&self) -> (DVec3, DVec3) {
+        Polygon::bounds(self)
+    }
+}
+
+impl Part for SpherePart {
+    fn below(&self, height: impl Fn(DVec3) -> f64) -> Option<Self> {
+        SpherePart::below(self, height)
+    }
+
+    fn extent(&self, height: impl Fn(DVec3) -> f64) -> (f64, f64) {
+        SpherePart::extent(self, height)
+    }
+
+    fn bounds(&self) -> (DVec3, DVec3) {
+        SpherePart::bounds(self)
+    }
+}
+
 /// One thing that a ray can hit.
 pub(crate) trait Primitive: Copy + Send + Sync + 'static {
     /// A ray made ready for these.
@@ -87,6 +131,14 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
 
     /// Whether it has a point in the closed box; may say so of one that passes within the rounding of `f64`.
     fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool;
+    /// What planes can leave of it.
+    type Part: Part;
+
+    /// All of it.
+    fn whole(&self) -> Self::Part;
+
+    /// A plane that it lies in, as a normal of any length but 0, where there is one.
+    fn plane_normal(&self) -> Option<DVec3>;
 }
 
 impl Primitive for Triangle {
@@ -134,6 +186,18 @@ impl Primitive for Triangle {
     #[inline(always)]
     fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool {
         Triangle::overlaps(self, lower, upper)
+    }
+
+    type Part = Polygon;
+
+    #[inline(always)]
+    fn whole(&self) -> Polygon {
+        Polygon::of(self)
+    }
+
+    fn plane_normal(&self) -> Option<DVec3> {
+        let normal = self.whole().doubled_area();
+        (normal != DVec3::ZERO).then_some(normal)
     }
 }
 
@@ -183,5 +247,15 @@ impl Primitive for Sphere {
 
     fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool {
         Sphere::overlaps(self, lower, upper)
+    }
+
+    type Part = SpherePart;
+
+    fn whole(&self) -> SpherePart {
+        SpherePart::of(self)
+    }
+
+    fn plane_normal(&self) -> Option<DVec3> {
+        None
     }
 }

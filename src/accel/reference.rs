@@ -95,6 +95,12 @@ impl Reference {
         &self.bounds
     }
 
+    /// Its lower and its upper bound.
+    #[inline(always)]
+    pub(super) fn extent_along(&self, axis: usize) -> (f32, f32) {
+        (self.bounds.0[axis & 3], -self.bounds.0[(axis & 3) + 4])
+    }
+
     #[inline(always)]
     pub(crate) fn geometry_id(&self) -> u32 {
         self.bounds.0[3].to_bits()

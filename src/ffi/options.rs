@@ -16,9 +16,9 @@ pub const GNOMON_STRUCTURE_BRUTE_FORCE: u32 = 1;
 pub const GNOMON_STRUCTURE_GRID: u32 = 2;
 /// Octree: for scenes that are empty here and crowded there.
 pub const GNOMON_STRUCTURE_OCTREE: u32 = 3;
-/// kd-tree. Not built yet.
+/// kd-tree: planes across the axes, each triangle in the leaves that it reaches into. At most 2^28 - 1 triangles.
 pub const GNOMON_STRUCTURE_KD_TREE: u32 = 4;
-/// BSP tree. Not built yet.
+/// BSP tree: planes of 13 fixed directions and of the triangles themselves. Slow to build. At most 2^28 - 1 triangles.
 pub const GNOMON_STRUCTURE_BSP_TREE: u32 = 5;
 /// Binary bounding volume hierarchy.
 pub const GNOMON_STRUCTURE_BVH: u32 = 6;
@@ -26,14 +26,16 @@ pub const GNOMON_STRUCTURE_BVH: u32 = 6;
 /// and smallest here. At most 2^28 triangles.
 pub const GNOMON_STRUCTURE_WIDE_BVH: u32 = 7;
 
-/// Fastest build. BVH: split at the median of the longest axis. WIDE_BVH: 8 bins and larger leaves.
-/// GRID: 2 cells a triangle. OCTREE: leaves of 16 triangles, where there are as many.
+/// Fastest build. GRID: 2 cells a triangle. OCTREE: leaves of 16 triangles, where there are as many. KD_TREE: split at the
+/// median, the axes in turn. BSP_TREE: the fixed directions alone. BVH: split at the median of the longest axis. WIDE_BVH:
+/// split in Morton order (Lauterbach et al. 2009).
 pub const GNOMON_QUALITY_LOW: u32 = 0;
-/// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007). GRID: 6 cells a
-/// triangle. OCTREE: leaves of 8.
+/// Good for both. GRID: 6 cells a triangle. OCTREE: leaves of 8. KD_TREE: surface area heuristic over clipped triangles
+/// (Wald and Havran 2006). BSP_TREE: the same over all its planes (Ize, Wald, Parker 2008). BVH and WIDE_BVH: binned surface
+/// area heuristic (Wald 2007).
 pub const GNOMON_QUALITY_MEDIUM: u32 = 1;
-/// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018). GRID: 12
-/// cells a triangle. OCTREE: leaves of 6.
+/// Best queries. GRID: 12 cells a triangle. OCTREE: leaves of 6. KD_TREE and BSP_TREE: as MEDIUM. BVH and WIDE_BVH: as
+/// MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
 pub const GNOMON_QUALITY_HIGH: u32 = 2;
 
 /// Decided in float, watertight; t, u and v come from what decided. For previews.

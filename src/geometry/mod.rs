@@ -1,6 +1,7 @@
 //! Rays, boxes and triangles, and the scalar definition of every test between them.
 
 mod aabb;
+mod clip;
 mod evaluation;
 mod evaluation_lanes;
 mod mesh_view;
@@ -12,9 +13,10 @@ mod triangle_hit;
 
 pub use aabb::Aabb;
 pub(crate) use aabb::{ObliqueSlabs, SlabRay, band_distance};
+pub(crate) use clip::Polygon;
 pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};
 pub use mesh_view::{IndexBytes, IndexView, PositionView, SphereView, TriangleView, span_bytes};
 pub use ray::{Hit, INVALID_ID, Ray};
-pub(crate) use sphere::{Sphere, SphereRay};
+pub(crate) use sphere::{Sphere, SpherePart, SphereRay};
 pub(crate) use triangle::Triangle;
 pub(crate) use triangle_hit::{Accurate, Fast, Interval, PrecisionMode, TriangleHit, TriangleRay};

@@ -170,6 +170,70 @@ impl Sphere {
     }
 }
 
+/// What planes leave of a sphere: of the whole sphere in a box, which planes across axes cut.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpherePart {
+    centre: DVec3,
+    radius: f64,
+    lower: DVec3,
+    upper: DVec3,
+}
+
+impl SpherePart {
+    pub(crate) fn of(sphere: &Sphere) -> Self {
+        let (centre, bounds) = (DVec3::from_array(sphere.centre.map(f64::from)), sphere.bounds());
+        let (lower, upper) = (bounds.lower.as_dvec3(), bounds.upper.as_dvec3());
+        Self { centre, radius: f64::from(sphere.radius), lower, upper }
+    }
+
+    /// The part where `height`, an affine function, is not positive, or more; `None` where there is no point of it.
+    pub(crate) fn below(&self, height: impl Fn(DVec3) -> f64) -> Option<Self> {
+        if self.extent(&height).0 > 0.0 {
+            return None;
+        }
+        let mut part = *self;
+        let slope = self.slope(&height);
+        for axis in 0..3 {
+            // A plane across this axis: the others do not count.
+            if slope[axis] != 0.0 && slope[(axis + 1) % 3] == 0.0 && slope[(axis + 2) % 3] == 0.0 {
+                let at_centre = height(self.centre);
+                let plane = self.centre[axis] - at_centre / slope[axis];
+                let error = 16.0 * E * (plane.abs() + self.centre[axis].abs() + self.radius);
+                if slope[axis] > 0.0 {
+                    part.upper[axis] = part.upper[axis].min(plane + error).max(part.lower[axis]);
+                } else {
+                    part.lower[axis] = part.lower[axis].max(plane - error).min(part.upper[axis]);
+                }
+            }
+        }
+        Some(part)
+    }
+
+    /// The least and the greatest height, or beyond.
+    pub(crate) fn extent(&self, height: impl Fn(DVec3) -> f64) -> (f64, f64) {
+        let slope = self.slope(&height);
+        let around = |centre: DVec3, reach: f64| {
+            let middle = height(centre);
+            let reach = reach + 16.0 * E * (middle.abs() + reach + slope.abs().dot(centre.abs()));
+            (middle - reach, middle + reach)
+        };
+        let of_sphere = around(self.centre, slope.length() * self.radius);
+        let half = 0.5 * (self.upper - self.lower);
+        let of_box = around(self.lower + half, slope.abs().dot(half));
+        (of_sphere.0.max(of_box.0), of_sphere.1.min(of_box.1))
+    }
+
+    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
+        (self.lower, self.upper)
+    }
+
+    /// How much a height grows along each axis: over a distance in which the centre's rounding does not show.
+    fn slope(&self, height: impl Fn(DVec3) -> f64) -> DVec3 {
+        let at = |axis: DVec3| height(axis) - height(DVec3::ZERO);
+        DVec3::new(at(DVec3::X), at(DVec3::Y), at(DVec3::Z))
+    }
+}
+
 fn in_order(s: f64, t: f64) -> Roots {
     Roots::Two(if s <= t { [s, t] } else { [t, s] })
 }

@@ -12,9 +12,8 @@ use crate::accel::{self, AnyAccel, BuildContext, Plan, Precision, PrimitiveSourc
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
-    let precision = (options.precision == Precision::Exact).then_some("GNOMON_PRECISION_EXACT");
-    if let Some(what) = accel::unsupported(options.structure).or(precision) {
-        return Err(BuildError::Unsupported(what));
+    if options.precision == Precision::Exact {
+        return Err(BuildError::Unsupported("GNOMON_PRECISION_EXACT"));
     }
     let own_pool;
     let pool = match options.thread_count {

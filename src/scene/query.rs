@@ -66,6 +66,8 @@ impl Scene {
             AnyAccel::BruteForce(brute_force) => self.dispatch_apart(kernel, brute_force),
             AnyAccel::Grid(grid) => self.dispatch_apart(kernel, grid),
             AnyAccel::Octree(octree) => self.dispatch_apart(kernel, octree),
+            AnyAccel::KdTree(tree) => self.dispatch_apart(kernel, tree),
+            AnyAccel::BspTree(tree) => self.dispatch_apart(kernel, tree),
             AnyAccel::Bvh(bvh) => self.dispatch_apart(kernel, bvh),
             AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
             AnyAccel::CompactWideBvh(bvh) => self.dispatch_isa(kernel, bvh),

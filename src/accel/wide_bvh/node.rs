@@ -8,7 +8,7 @@ use crate::simd::LANES;
 /// index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
-pub(super) struct Child(u32);
+pub(crate) struct Child(u32);
 
 impl Child {
     const LEAF: u32 = 1 << 31;

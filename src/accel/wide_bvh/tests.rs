@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::leaves::{ByAxis, LeafTriangles, TriangleForm};
+use super::leaves::{ByAxis, LeafForm, LeafTriangles, TriangleForm};
 use super::node::Child;
 use super::{Compact, WideBvh, check_count};
 use crate::accel::{BuildContext, BuildFailure, PrimitiveSource, Quality, Reference, Watch};
