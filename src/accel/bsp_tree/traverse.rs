@@ -16,7 +16,7 @@ const SLOPE_COUNT: usize = 16;
 impl<T: Primitive> Walk for BspTree<T> {
     type Primitive = T;
 
-    #[inline(always)]
+    #[inline(never)]
     fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
         let walk_ray = WalkRay::new(ray, &self.tree.bounds);
         let WalkRay { origin, direction, band, .. } = walk_ray;

@@ -15,7 +15,7 @@ use crate::geometry::{PrecisionMode, Ray};
 impl<T: Primitive> Walk for Grid<T> {
     type Primitive = T;
 
-    #[inline(always)]
+    #[inline(never)]
     fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
         let walk_ray = WalkRay::new(ray, &self.bounds);
         let span = walk_ray.span_in(&self.bounds, ray.t_min, ray.t_max)?;

@@ -10,7 +10,7 @@ use crate::geometry::{PrecisionMode, Ray};
 impl<T: Primitive> Walk for KdTree<T> {
     type Primitive = T;
 
-    #[inline(always)]
+    #[inline(never)]
     fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
         let walk_ray = WalkRay::new(ray, &self.tree.bounds);
         let WalkRay { origin, direction, band, .. } = walk_ray;

@@ -27,7 +27,7 @@ const MOST_PENDING: usize = 7 * (MOST_LEVELS - 1) + 1;
 impl<T: Primitive> Walk for Octree<T> {
     type Primitive = T;
 
-    #[inline(always)]
+    #[inline(never)]
     fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
         let walk_ray = WalkRay::new(ray, &self.bounds);
         let span = walk_ray.span_in(&self.bounds, ray.t_min, ray.t_max)?;

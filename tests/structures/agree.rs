@@ -1,10 +1,8 @@
 //! Every structure, quality, precision and call form gives the same hits, to the bit: brute force is the measure.
 
-mod common;
-
 use std::mem::MaybeUninit;
 
-use common::{CELLS_ON_WALLS, Mesh, Rng, ZERO_AREA_GEOMETRY, meshes, rays_for};
+use crate::common::{CELLS_ON_WALLS, Mesh, Rng, ZERO_AREA_GEOMETRY, meshes, rays_for};
 use glam::Vec3;
 use gnomon::{BuildOptions, Hit, Isa, Precision, Quality, Ray, Scene, SceneBuilder, Structure};
 

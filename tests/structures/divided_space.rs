@@ -1,10 +1,8 @@
 //! What kd-tree and BSP tree must stand: rays in the planes that divide, and input that no plane divides well.
 
-mod common;
-
 use std::time::{Duration, Instant};
 
-use common::{Mesh, Rng};
+use crate::common::{Mesh, Rng};
 use glam::Vec3;
 use gnomon::{BuildOptions, Quality, Ray, Scene, SceneBuilder, Structure};
 

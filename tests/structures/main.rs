@@ -1,0 +1,5 @@
+//! What every structure promises, held against brute force.
+
+mod agree;
+mod common;
+mod divided_space;
