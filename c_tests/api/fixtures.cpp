@@ -7,17 +7,9 @@
 namespace harness {
 
 const std::vector<Named> kStructures{
-    {"auto", GNOMON_STRUCTURE_AUTO},
-    {"brute_force", GNOMON_STRUCTURE_BRUTE_FORCE},
-<<<<<<< HEAD
-    {"grid", GNOMON_STRUCTURE_GRID},
-    {"octree", GNOMON_STRUCTURE_OCTREE},
-=======
-    {"kd_tree", GNOMON_STRUCTURE_KD_TREE},
-    {"bsp_tree", GNOMON_STRUCTURE_BSP_TREE},
->>>>>>> hk/kd
-    {"bvh", GNOMON_STRUCTURE_BVH},
-    {"wide_bvh", GNOMON_STRUCTURE_WIDE_BVH},
+    {"auto", GNOMON_STRUCTURE_AUTO},     {"brute_force", GNOMON_STRUCTURE_BRUTE_FORCE}, {"grid", GNOMON_STRUCTURE_GRID},
+    {"octree", GNOMON_STRUCTURE_OCTREE}, {"kd_tree", GNOMON_STRUCTURE_KD_TREE},         {"bsp_tree", GNOMON_STRUCTURE_BSP_TREE},
+    {"bvh", GNOMON_STRUCTURE_BVH},       {"wide_bvh", GNOMON_STRUCTURE_WIDE_BVH},
 };
 const std::vector<Named> kQualities{
     {"low", GNOMON_QUALITY_LOW},
@@ -29,13 +21,6 @@ const std::vector<Named> kPrecisions{
     {"accurate", GNOMON_PRECISION_ACCURATE},
 };
 const std::vector<Unbuilt> kUnbuilt{
-<<<<<<< HEAD
-    {"GNOMON_STRUCTURE_KD_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_KD_TREE},
-    {"GNOMON_STRUCTURE_BSP_TREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_BSP_TREE},
-=======
-    {"GNOMON_STRUCTURE_GRID", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_GRID},
-    {"GNOMON_STRUCTURE_OCTREE", &GnomonBuildOptions::structure, GNOMON_STRUCTURE_OCTREE},
->>>>>>> hk/kd
     {"GNOMON_PRECISION_EXACT", &GnomonBuildOptions::precision, GNOMON_PRECISION_EXACT},
 };
 const std::vector<Named> kIsas{

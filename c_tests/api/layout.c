@@ -55,7 +55,14 @@ ASSERT_SIZE(GnomonQueryOptions, 8);
 ASSERT_OFFSET(GnomonQueryOptions, struct_size, 0);
 ASSERT_OFFSET(GnomonQueryOptions, thread_count, 4);
 
-ASSERT_SIZE(GnomonSceneStats, 104);
+ASSERT_SIZE(GnomonSpheres, 40);
+ASSERT_OFFSET(GnomonSpheres, centres, 0);
+ASSERT_OFFSET(GnomonSpheres, centre_stride, 8);
+ASSERT_OFFSET(GnomonSpheres, radii, 16);
+ASSERT_OFFSET(GnomonSpheres, radius_stride, 24);
+ASSERT_OFFSET(GnomonSpheres, sphere_count, 32);
+
+ASSERT_SIZE(GnomonSceneStats, 112);
 ASSERT_OFFSET(GnomonSceneStats, triangle_count, 0);
 ASSERT_OFFSET(GnomonSceneStats, node_count, 8);
 ASSERT_OFFSET(GnomonSceneStats, leaf_count, 16);
@@ -71,3 +78,4 @@ ASSERT_OFFSET(GnomonSceneStats, leaf_bytes, 72);
 ASSERT_OFFSET(GnomonSceneStats, peak_build_bytes, 80);
 ASSERT_OFFSET(GnomonSceneStats, build_seconds, 88);
 ASSERT_OFFSET(GnomonSceneStats, sah_cost, 96);
+ASSERT_OFFSET(GnomonSceneStats, sphere_count, 104);
