@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::morton::Curve;
 use super::reference::{PrimitiveSource, Reference};
 use super::{BuildContext, BuildFailure, Primitive};
 use crate::geometry::Aabb;
@@ -27,13 +28,16 @@ pub(super) fn gather_along_curve<S: PrimitiveSource>(
     context: &BuildContext,
 ) -> Result<Vec<S::Primitive>, BuildFailure> {
     let count = references.len();
-    let curve = Curve::new(bounds);
+    let curve = Curve::new(bounds, BITS);
+    let key = |reference: &Reference| {
+        curve.code(reference) << (64 - 3 * BITS) | u64::from(hash(reference) >> (3 * BITS - 32))
+    };
     let mut places: Vec<Place> = context.reserve(count)?;
     context.collect_with(
         &mut places,
         count as u32,
         |_| (),
-        |(), index| Place { key: curve.key(&references[index as usize]), index },
+        |(), index| Place { key: key(&references[index as usize]), index },
     );
     if context.is_parallel() {
         places.par_sort_unstable();
@@ -52,38 +56,11 @@ pub(super) fn gather_along_curve<S: PrimitiveSource>(
     Ok(primitives)
 }
 
-/// Numbers places of a box along it.
-struct Curve {
-    doubled_lower: [f64; 3],
-    /// How many of the curve's cells there are for each doubled length.
-    per_length: f64,
-}
-
-impl Curve {
-    fn new(bounds: &Aabb) -> Self {
-        let (lower, upper) = (bounds.lower.as_dvec3(), bounds.upper.as_dvec3());
-        let most = f64::from((1u32 << BITS) - 1);
-        Self { doubled_lower: (2.0 * lower).to_array(), per_length: most / (2.0 * (upper - lower).max_element()) }
-    }
-
-    fn key(&self, reference: &Reference) -> u64 {
-        let bounds = reference.bounds();
-        let doubled_centre = bounds.doubled_centre().to_array();
-        let axis = |axis: usize| {
-            spread(((f64::from(doubled_centre[axis]) - self.doubled_lower[axis]) * self.per_length) as u32)
-        };
-        let code = axis(0) | axis(1) << 1 | axis(2) << 2;
-        let Aabb { lower, upper } = bounds.to_aabb();
-        let hash = [lower, upper].iter().flat_map(|corner| corner.to_array()).fold(0, |hash: u32, coordinate| {
-            // FNV-1a, a word at a time; of two zeros the positive one.
-            (hash ^ (coordinate + 0.0).to_bits()).wrapping_mul(0x0100_0193).rotate_left(15)
-        });
-        code << (64 - 3 * BITS) | u64::from(hash >> (3 * BITS - 32))
-    }
-}
-
-/// Two zeros after each of the lowest bits.
-fn spread(number: u32) -> u64 {
-    let number = u64::from(number.min((1 << BITS) - 1));
-    (0..BITS).fold(0, |spread, bit| spread | (number >> bit & 1) << (3 * bit))
+/// A hash of its box, the same for primitives of the same shape.
+fn hash(reference: &Reference) -> u32 {
+    let Aabb { lower, upper } = reference.bounds().to_aabb();
+    [lower, upper].iter().flat_map(|corner| corner.to_array()).fold(0, |hash: u32, coordinate| {
+        // FNV-1a, a word at a time; of two zeros the positive one.
+        (hash ^ (coordinate + 0.0).to_bits()).wrapping_mul(0x0100_0193).rotate_left(15)
+    })
 }

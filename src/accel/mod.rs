@@ -10,6 +10,7 @@ mod grid;
 mod kd_tree;
 mod leaf;
 mod listed;
+mod morton;
 mod octree;
 mod primitive;
 mod reference;
