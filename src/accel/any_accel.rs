@@ -64,13 +64,12 @@ pub(crate) fn build(
             context.release(references);
             BruteForce::build(primitives, context).map(AnyAccel::BruteForce)
         }
-        (Structure::Bvh, Quality::Low) => {
-            Bvh::build(references, bounds, &Median, quality, source, context).map(AnyAccel::Bvh)
-        }
-        (Structure::Bvh, Quality::Medium | Quality::High) => {
+        (Structure::Bvh, Quality::Low) => Bvh::build(references, bounds, &Median, source, context).map(AnyAccel::Bvh),
+        (Structure::Bvh, Quality::Medium) => {
             let rule = &BinnedSah::FOR_SCALAR_LEAVES;
-            Bvh::build(references, bounds, rule, quality, source, context).map(AnyAccel::Bvh)
+            Bvh::build(references, bounds, rule, source, context).map(AnyAccel::Bvh)
         }
+        (Structure::Bvh, Quality::High) => Bvh::build_high(references, bounds, source, context).map(AnyAccel::Bvh),
         (Structure::WideBvh, _) if is_compact => {
             WideBvh::build(references, bounds, quality, source, context).map(AnyAccel::CompactWideBvh)
         }

@@ -1,25 +1,32 @@
 //! What a traversal relies on, checked after every build in debug builds and tests.
 
+use std::collections::HashMap;
+
 use super::WideBvh;
 use super::collapse::{LEAF_COST, NODE_COST};
 use super::leaves::{LeafForm, LeafTriangles};
 use super::node::Child;
+use glam::Vec3;
+
 use crate::accel::bvh::node::MOST_LEVELS;
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Triangle};
 use crate::simd::LANES;
 
 impl<F: LeafForm> WideBvh<F> {
-    /// Every box contains what is below it, every leaf and node is reached once, and the stack suffices.
+    /// Every box contains what is below it, or part of each triangle and some other leaf the rest; every leaf and node is
+    /// reached once, and the stack suffices.
     pub(crate) fn validate(&self) -> Result<(), String> {
         let (mut node_seen, mut leaf_count, mut deepest) = (vec![false; self.nodes.len()], 0, 0);
         let mut pending = vec![(self.root, self.bounds, 1)];
         let mut cost = 0.0;
+        let (mut triangle_count, mut leaves) = (0, Vec::new());
         while let Some((child, bounds, level)) = pending.pop() {
             deepest = deepest.max(level);
             cost += half_area(&bounds) * f64::from(if child.is_leaf() { LEAF_COST } else { NODE_COST });
             if child.is_leaf() {
                 leaf_count += 1;
-                self.validate_leaf(child, &bounds)?;
+                leaves.push((child, bounds));
+                triangle_count += child.triangles().1;
                 continue;
             }
             let at = child.node_index();
@@ -43,6 +50,10 @@ impl<F: LeafForm> WideBvh<F> {
         if let Some(index) = node_seen.iter().position(|seen| !seen) {
             return Err(format!("node {index} is not reached"));
         }
+        self.validate_leaves(&leaves)?;
+        if triangle_count != self.leaves.triangle_count() {
+            return Err(format!("the leaves have {triangle_count} triangles, not {}", self.leaves.triangle_count()));
+        }
         if leaf_count != self.leaves.leaf_count() {
             return Err(format!("{leaf_count} leaves are reached, {} are there", self.leaves.leaf_count()));
         }
@@ -57,16 +68,53 @@ impl<F: LeafForm> WideBvh<F> {
         Ok(())
     }
 
-    fn validate_leaf(&self, child: Child, bounds: &Aabb) -> Result<(), String> {
-        let leaf = self.leaves.leaf(child.triangles());
-        for lane in 0..child.triangles().1 {
-            let inside = leaf.triangle(lane).bounds();
-            if !bounds.contains(&inside) {
-                return Err(format!("triangle {lane} of leaf {child:?}: {inside:?} is not inside {bounds:?}"));
+    /// Whether the leaves that have a triangle contain it together: all of its points that are looked at.
+    fn validate_leaves(&self, leaves: &[(Child, Aabb)]) -> Result<(), String> {
+        let mut parts = HashMap::<u32, (Triangle, Vec<Aabb>)>::new();
+        for &(child, bounds) in leaves {
+            for triangle in self.triangles(child) {
+                if !bounds.contains(&triangle.bounds()) {
+                    parts.insert(triangle.primitive_id, (triangle, Vec::new()));
+                }
+            }
+        }
+        for &(child, bounds) in leaves {
+            for triangle in self.triangles(child) {
+                if let Some((_, boxes)) = parts.get_mut(&triangle.primitive_id) {
+                    boxes.push(bounds);
+                }
+            }
+        }
+        for (triangle, boxes) in parts.values() {
+            let is_covered =
+                |&point: &Vec3| boxes.iter().any(|part| part.contains(&Aabb { lower: point, upper: point }));
+            if let Some(point) = points_of(triangle).iter().find(|point| !is_covered(point)) {
+                return Err(format!("{point} of {triangle:?} is in none of its leaves' boxes {boxes:?}"));
             }
         }
         Ok(())
     }
+
+    fn triangles(&self, child: Child) -> impl Iterator<Item = Triangle> {
+        let leaf = self.leaves.leaf(child.triangles());
+        (0..child.triangles().1).map(move |lane| leaf.triangle(lane))
+    }
+}
+
+/// The points that divide the edges and the inside evenly.
+fn points_of(triangle: &Triangle) -> Vec<Vec3> {
+    const STEPS: u32 = 12;
+    let mut points = Vec::new();
+    for i in 0..=STEPS {
+        for j in 0..=STEPS - i {
+            // Rounded once: no box that contains the point itself loses it so.
+            let weights = [i, j, STEPS - i - j].map(|weight| f64::from(weight) / f64::from(STEPS));
+            let point =
+                triangle.axes.map(|row| (0..3).map(|corner| f64::from(row[corner]) * weights[corner]).sum::<f64>());
+            points.push(point.map(|coordinate| coordinate as f32).into());
+        }
+    }
+    points
 }
 
 fn half_area(bounds: &Aabb) -> f64 {
