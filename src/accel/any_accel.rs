@@ -82,13 +82,12 @@ pub(crate) fn build<S: PrimitiveSource>(
         (Structure::Octree, _) => Octree::build(references, bounds, quality, source, context).map(AnyAccel::Octree),
         (Structure::KdTree, _) => KdTree::build(references, bounds, quality, source, context).map(AnyAccel::KdTree),
         (Structure::BspTree, _) => BspTree::build(references, bounds, quality, source, context).map(AnyAccel::BspTree),
-        (Structure::Bvh, Quality::Low) => {
-            Bvh::build(references, bounds, &Median, quality, source, context).map(AnyAccel::Bvh)
-        }
-        (Structure::Bvh, Quality::Medium | Quality::High) => {
+        (Structure::Bvh, Quality::Low) => Bvh::build(references, bounds, &Median, source, context).map(AnyAccel::Bvh),
+        (Structure::Bvh, Quality::Medium) => {
             let rule = &BinnedSah::FOR_SCALAR_LEAVES;
-            Bvh::build(references, bounds, rule, quality, source, context).map(AnyAccel::Bvh)
+            Bvh::build(references, bounds, rule, source, context).map(AnyAccel::Bvh)
         }
+        (Structure::Bvh, Quality::High) => Bvh::build_high(references, bounds, source, context).map(AnyAccel::Bvh),
         (Structure::WideBvh, _) if is_compact => {
             WideBvh::build(references, bounds, quality, source, context).map(AnyAccel::CompactWideBvh)
         }

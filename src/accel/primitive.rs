@@ -131,6 +131,12 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
 
     /// Whether it has a point in the closed box; may say so of one that passes within the rounding of `f64`.
     fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool;
+    /// Whether it is a triangle.
+    const IS_TRIANGLE: bool;
+
+    /// For what is done with triangles alone.
+    fn as_triangle(&self) -> Option<Triangle>;
+
     /// What planes can leave of it.
     type Part: Part;
 
@@ -186,6 +192,13 @@ impl Primitive for Triangle {
     #[inline(always)]
     fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool {
         Triangle::overlaps(self, lower, upper)
+    }
+
+    const IS_TRIANGLE: bool = true;
+
+    #[inline(always)]
+    fn as_triangle(&self) -> Option<Triangle> {
+        Some(*self)
     }
 
     type Part = Polygon;
@@ -247,6 +260,12 @@ impl Primitive for Sphere {
 
     fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool {
         Sphere::overlaps(self, lower, upper)
+    }
+
+    const IS_TRIANGLE: bool = false;
+
+    fn as_triangle(&self) -> Option<Triangle> {
+        None
     }
 
     type Part = SpherePart;

@@ -68,6 +68,19 @@ impl Bounds8 {
         self
     }
 
+    /// What the spare lanes hold has no meaning. Some upper plane is below its lower one where nothing is common.
+    #[inline(always)]
+    pub(super) fn intersection<S: Simd>(mut self, simd: S, other: &Self) -> Self {
+        self.0 = simd.store(simd.max(simd.load(&self.0), simd.load(&other.0)));
+        self
+    }
+
+    /// Whether it is [`Bounds8::EMPTY`].
+    #[inline(always)]
+    pub(super) fn is_empty(&self) -> bool {
+        self.0[0] == f32::INFINITY
+    }
+
     /// What the spare lanes hold has no meaning.
     #[inline(always)]
     pub(crate) fn grow<S: Simd>(&mut self, simd: S, other: &Self) {
@@ -109,6 +122,11 @@ impl Reference {
     #[inline(always)]
     pub(crate) fn primitive_id(&self) -> u32 {
         self.bounds.0[7].to_bits()
+    }
+
+    /// Leaves the ids.
+    pub(super) fn set_bounds(&mut self, bounds: &Bounds8) {
+        *self = Self::new(&bounds.to_aabb(), self.geometry_id(), self.primitive_id());
     }
 
     /// The order in which equal hits win.

@@ -35,6 +35,27 @@ impl Split {
         let (left, right) = references.split_at(middle);
         Self { middle, bounds: [union(simd, left), union(simd, right)] }
     }
+
+    /// Shares out the room behind the first `count` references, to both children in proportion.
+    #[inline(always)]
+    pub(super) fn share_out(self, references: &mut [Reference], count: usize) -> Division {
+        let Self { middle, bounds } = self;
+        let room = references.len() - count;
+        let mut right_begin = middle;
+        if room > 0 {
+            right_begin += (room as u64 * middle as u64 / count as u64) as usize;
+            references.copy_within(middle..count, right_begin);
+        }
+        Division { left_count: middle, right_begin, right_count: count - middle, bounds }
+    }
+}
+
+/// As [`Split`], where there may be room between the children's references, for more of the first child's.
+pub(crate) struct Division {
+    left_count: usize,
+    right_begin: usize,
+    right_count: usize,
+    bounds: [Bounds8; 2],
 }
 
 struct Union<'a>(&'a [Reference]);
@@ -49,7 +70,7 @@ impl SimdKernel for Union<'_> {
 }
 
 #[inline(always)]
-fn union<S: Simd>(simd: S, references: &[Reference]) -> Bounds8 {
+pub(super) fn union<S: Simd>(simd: S, references: &[Reference]) -> Bounds8 {
     let mut bounds = Bounds8::EMPTY;
     for reference in references {
         bounds.grow(simd, reference.bounds());
@@ -83,6 +104,32 @@ pub(crate) trait SplitRule: Sync {
 
     /// As [`SplitRule::split`], on all threads.
     fn split_together(&self, references: &mut [Reference], bounds: &Bounds8, context: &BuildContext) -> Option<Split>;
+
+    /// As [`SplitRule::split`] of the first `count` references, where a rule may make more of them, up to the slice's end.
+    #[inline(always)]
+    fn divide<S: Simd>(
+        &self,
+        simd: S,
+        references: &mut [Reference],
+        count: usize,
+        bounds: &Bounds8,
+        scratch: &mut Self::Scratch,
+    ) -> Option<Division> {
+        let split = self.split(simd, &mut references[..count], bounds, scratch)?;
+        Some(split.share_out(references, count))
+    }
+
+    /// As [`SplitRule::divide`], on all threads.
+    fn divide_together(
+        &self,
+        references: &mut [Reference],
+        count: usize,
+        bounds: &Bounds8,
+        context: &BuildContext,
+    ) -> Option<Division> {
+        let split = self.split_together(&mut references[..count], bounds, context)?;
+        Some(split.share_out(references, count))
+    }
 }
 
 /// From here halving 2^32 references ends in time.
@@ -91,15 +138,16 @@ const LAST_FREE_LEVEL: usize = MOST_LEVELS - 33;
 /// Smaller trees are built by one thread without a look at the watch.
 pub(super) const MOST_IN_SUBTREE: usize = 4096;
 
-/// The references are reordered; the tree's subtrees have them.
+/// The references are reordered; the tree's subtrees have them. Those behind the first `count` are room for more.
 pub(in crate::accel) fn build<'r, R: SplitRule, T: PrimitiveSource>(
     references: &'r mut [Reference],
+    count: usize,
     rule: &R,
     source: &T,
     context: &BuildContext,
 ) -> Result<BinaryTree<'r>, BuildFailure> {
-    let bounds = union_together(references, context);
-    let part = Part { references, bounds, level: 0, is_distinct: false };
+    let bounds = union_together(&references[..count], context);
+    let part = Part { references, count, bounds, level: 0, is_distinct: false };
     let branch = Builder { rule, source, context }.build(part)?;
     let mut tree = BinaryTree { top: Vec::new(), subtrees: Vec::new(), depth: 0 };
     tree.append(branch);
@@ -109,9 +157,11 @@ pub(in crate::accel) fn build<'r, R: SplitRule, T: PrimitiveSource>(
 /// What is to become a node, and what lies below it.
 struct Part<'r> {
     references: &'r mut [Reference],
+    /// How many there are; the others are room for more.
+    count: usize,
     bounds: Bounds8,
     level: usize,
-    /// Whether no triangle is there twice.
+    /// Whether no two triangles are the same.
     is_distinct: bool,
 }
 
@@ -149,33 +199,34 @@ struct Builder<'a, R, T> {
 impl<R: SplitRule, T: PrimitiveSource> Builder<'_, R, T> {
     fn build<'r>(&self, part: Part<'r>) -> Result<Branch<'r>, BuildFailure> {
         self.context.check()?;
-        if part.references.len() <= MOST_IN_SUBTREE {
+        if part.count <= MOST_IN_SUBTREE {
             return self.subtree(part);
         }
-        let Part { mut references, bounds, level, mut is_distinct } = part;
-        let mut split = None;
+        let Part { references, mut count, bounds, level, mut is_distinct } = part;
+        let mut division = None;
         if level < LAST_FREE_LEVEL {
-            split = self.rule.split_together(references, &bounds, self.context);
+            division = self.rule.divide_together(references, count, &bounds, self.context);
         }
-        if split.is_none() && !is_distinct {
+        if division.is_none() && !is_distinct {
             is_distinct = true;
-            let count = drop_duplicates(references, self.source);
-            references = &mut references[..count];
+            count = drop_duplicates(&mut references[..count], self.source);
             if count <= MOST_IN_SUBTREE {
-                return self.subtree(Part { references, bounds, level, is_distinct });
+                return self.subtree(Part { references, count, bounds, level, is_distinct });
             }
         }
-        let Split { middle, bounds: [left_bounds, right_bounds] } = split.unwrap_or_else(|| halve(Scalar, references));
-        let (left, right) = references.split_at_mut(middle);
-        let left = Part { references: left, bounds: left_bounds, level: level + 1, is_distinct };
-        let right = Part { references: right, bounds: right_bounds, level: level + 1, is_distinct };
+        let Division { left_count, right_begin, right_count, bounds: [left_bounds, right_bounds] } =
+            division.unwrap_or_else(|| halve(Scalar, &mut references[..count]).share_out(references, count));
+        let level = level + 1;
+        let (left, right) = references.split_at_mut(right_begin);
+        let left = Part { references: left, count: left_count, bounds: left_bounds, level, is_distinct };
+        let right = Part { references: right, count: right_count, bounds: right_bounds, level, is_distinct };
         let (left, right) = self.context.join(|| self.build(left), || self.build(right));
         Ok(Branch::Node { bounds, children: Box::new([left?, right?]) })
     }
 
     fn subtree<'r>(&self, part: Part<'r>) -> Result<Branch<'r>, BuildFailure> {
-        let count = part.references.len();
-        let nodes = self.context.reserve(2 * count - 1)?;
+        let count = part.count;
+        let nodes = self.context.reserve(2 * part.references.len() - 1)?;
         let (mut subtree, depth) =
             self.context.vectorize(GrowSubtree { rule: self.rule, source: self.source, nodes, part });
         self.context.shrink(&mut subtree.nodes);
@@ -192,11 +243,12 @@ struct GrowSubtree<'a, 'r, R, T> {
     part: Part<'r>,
 }
 
-/// A node that waits, or is at work: its references are those from `begin` to `end`.
+/// A node that waits, or is at work: its references are those from `begin` to `end`, and up to `limit` is room for more.
 #[derive(Clone, Copy)]
 struct Waiting {
     begin: usize,
     end: usize,
+    limit: usize,
     bounds: Bounds8,
     level: usize,
     is_distinct: bool,
@@ -209,34 +261,38 @@ impl<'r, R: SplitRule, T: PrimitiveSource> SimdKernel for GrowSubtree<'_, 'r, R,
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        let Self { rule, source, mut nodes, part: Part { references, bounds, level, is_distinct } } = self;
+        let Self { rule, source, mut nodes, part: Part { references, count, bounds, level, is_distinct } } = self;
         let mut scratch = R::Scratch::default();
         let mut waiting = ArrayVec::<Waiting, MOST_LEVELS>::new_const();
-        let mut at_work = Waiting { begin: 0, end: references.len(), bounds, level, is_distinct, parent: 0 };
+        let limit = references.len();
+        let mut at_work = Waiting { begin: 0, end: count, limit, bounds, level, is_distinct, parent: 0 };
         let (mut deepest, mut stored) = (level, 0);
         loop {
-            let Waiting { begin, mut end, bounds, level, mut is_distinct, .. } = at_work;
+            let Waiting { begin, mut end, limit, bounds, level, mut is_distinct, .. } = at_work;
             deepest = deepest.max(level);
-            let mut split = None;
+            let mut division = None;
             if end - begin > 1 && level < LAST_FREE_LEVEL {
-                split = rule.split(simd, &mut references[begin..end], &bounds, &mut scratch);
+                division = rule.divide(simd, &mut references[begin..limit], end - begin, &bounds, &mut scratch);
             }
-            if split.is_none() && end - begin > rule.most_in_leaf() {
+            if division.is_none() && end - begin > rule.most_in_leaf() {
                 if !is_distinct {
                     is_distinct = true;
                     end = begin + drop_duplicates(&mut references[begin..end], source);
                 }
                 if end - begin > rule.most_in_leaf() {
-                    split = Some(halve(simd, &mut references[begin..end]));
+                    let split = halve(simd, &mut references[begin..end]);
+                    division = Some(split.share_out(&mut references[begin..limit], end - begin));
                 }
             }
             let aabb = bounds.to_aabb();
-            if let Some(Split { middle, bounds: [left_bounds, right_bounds] }) = split {
-                let (middle, level) = (begin + middle, level + 1);
-                let right =
-                    Waiting { begin: middle, end, bounds: right_bounds, level, is_distinct, parent: nodes.len() };
-                waiting.push(right);
-                at_work = Waiting { begin, end: middle, bounds: left_bounds, level, is_distinct, parent: 0 };
+            if let Some(Division { left_count, right_begin, right_count, bounds: [left_bounds, right_bounds] }) =
+                division
+            {
+                let (middle, level, parent) = (begin + right_begin, level + 1, nodes.len());
+                let end = middle + right_count;
+                waiting.push(Waiting { begin: middle, end, limit, bounds: right_bounds, level, is_distinct, parent });
+                let end = begin + left_count;
+                at_work = Waiting { begin, end, limit: middle, bounds: left_bounds, level, is_distinct, parent: 0 };
                 nodes.push(Node::new(&aabb, 0, 0));
                 continue;
             }
@@ -264,6 +320,10 @@ fn drop_duplicates(references: &mut [Reference], source: &impl PrimitiveSource) 
         if shape(&references[next]) != shape(&references[count - 1]) {
             references[count] = references[next];
             count += 1;
+        } else {
+            // Their boxes differ where parts of them were cut off.
+            let both = references[count - 1].bounds().union(Scalar, references[next].bounds());
+            references[count - 1].set_bounds(&both);
         }
     }
     count

@@ -1,15 +1,18 @@
 //! Binary bounding volume hierarchy: a box in every node, two children or a run of primitives below it.
 //!
-//! Shines on everything that is unevenly spread; each triangle is stored once. Fails where boxes overlap much: long
-//! diagonal triangles, many triangles in one place.
+//! Shines on everything that is unevenly spread; each triangle is stored once, unless quality HIGH finds that parts of it
+//! are better apart. Fails where boxes overlap much: many triangles in one place, and below HIGH long diagonal ones.
 
 pub(super) mod build;
+mod chopped_bins;
+mod clip;
 pub(super) mod node;
 mod pack;
 pub(super) mod reinsert;
 mod split_median;
 mod split_morton;
 mod split_sah;
+pub(super) mod split_spatial;
 mod traverse;
 #[cfg(any(test, debug_assertions))]
 mod validate;
@@ -18,12 +21,12 @@ pub(crate) use split_median::Median;
 pub(crate) use split_morton::Morton;
 pub(crate) use split_sah::BinnedSah;
 
-use build::SplitRule;
+use build::{BinaryTree, SplitRule};
 use node::{Node, NodePair};
 
 use super::reference::{PrimitiveSource, Reference};
 use super::stats::Shape;
-use super::{BuildContext, BuildFailure, Primitive, Quality};
+use super::{BuildContext, BuildFailure, Primitive};
 use crate::geometry::Aabb;
 
 pub(crate) struct Bvh<T> {
@@ -43,21 +46,47 @@ impl<T: Primitive> Bvh<T> {
         mut references: Vec<Reference>,
         bounds: Aabb,
         rule: &R,
-        quality: Quality,
         source: &impl PrimitiveSource<Primitive = T>,
         context: &BuildContext,
     ) -> Result<Self, BuildFailure> {
         let count = references.len();
         context.expect(2 * count);
-        let mut tree = build::build(&mut references, rule, source, context)?;
-        let mut reordered = Vec::new();
-        if quality == Quality::High {
-            tree = reinsert::reinsert(tree, &mut reordered, context)?;
-        }
-        let bvh = pack::pack(tree, bounds, source, context)?;
+        let tree = build::build(&mut references, count, rule, source, context)?;
+        let bvh = Self::finish(tree, bounds, source, context)?;
         context.release(references);
+        context.advance(count)?;
+        Ok(bvh)
+    }
+
+    /// As [`Bvh::build`], of quality HIGH.
+    pub(crate) fn build_high(
+        mut references: Vec<Reference>,
+        bounds: Aabb,
+        source: &impl PrimitiveSource<Primitive = T>,
+        context: &BuildContext,
+    ) -> Result<Self, BuildFailure> {
+        let count = references.len();
+        let (mut divided, mut reordered) = (Vec::new(), Vec::new());
+        let rule = BinnedSah::FOR_SCALAR_LEAVES;
+        let most = u32::MAX as usize;
+        let tree = split_spatial::build(&mut references, &mut divided, rule, most, source, context)?;
+        let tree = reinsert::reinsert(tree, &mut reordered, context)?;
+        context.expect(count);
+        let bvh = Self::finish(tree, bounds, source, context)?;
+        context.release(references);
+        context.release(divided);
         context.release(reordered);
         context.advance(count)?;
+        Ok(bvh)
+    }
+
+    fn finish(
+        tree: BinaryTree,
+        bounds: Aabb,
+        source: &impl PrimitiveSource<Primitive = T>,
+        context: &BuildContext,
+    ) -> Result<Self, BuildFailure> {
+        let bvh = pack::pack(tree, bounds, source, context)?;
         #[cfg(any(test, debug_assertions))]
         bvh.validate().expect("a builder keeps the tree's invariants");
         Ok(bvh)

@@ -5,6 +5,7 @@
 use glam::Vec4;
 
 use super::build::{Split, SplitRule};
+use super::node::Node;
 use crate::accel::BuildContext;
 use crate::accel::build_context::CHUNK;
 use crate::accel::reference::{Bounds8, Reference};
@@ -25,13 +26,21 @@ pub(crate) struct BinnedSah {
     least_split: usize,
     /// At most [`MOST_BINS`].
     bin_count: usize,
+    /// What a leaf of so many triangles costs a ray that meets it.
+    leaf_cost: fn(u32) -> f64,
 }
 
 impl BinnedSah {
     /// Leaves whose triangles are tested one by one.
-    pub(crate) const FOR_SCALAR_LEAVES: Self = Self { most_in_leaf: 8, least_split: 1, bin_count: MOST_BINS };
+    pub(crate) const FOR_SCALAR_LEAVES: Self = Self {
+        most_in_leaf: 8,
+        least_split: 1,
+        bin_count: MOST_BINS,
+        leaf_cost: |count| f64::from(count) * TRIANGLE_COST,
+    };
     /// Leaves to be merged into such as are tested at once.
-    pub(crate) const FOR_WIDE_LEAVES: Self = Self { most_in_leaf: 4, least_split: 4, bin_count: MOST_BINS };
+    pub(crate) const FOR_WIDE_LEAVES: Self =
+        Self { most_in_leaf: 4, least_split: 4, bin_count: MOST_BINS, leaf_cost: |_| TRIANGLE_COST };
 
     /// The cheapest plane, if a split there is worth it.
     #[inline(always)]
@@ -52,6 +61,77 @@ impl BinnedSah {
     }
 }
 
+/// The cheapest plane, if a split there is worth it, and the boxes of both sides.
+pub(super) struct ObjectSplit {
+    binning: Binning,
+    plane: Plane,
+    pub(super) bounds: [Bounds8; 2],
+}
+
+impl ObjectSplit {
+    /// Areas of both sides times their numbers of triangles.
+    #[inline(always)]
+    pub(super) fn cost(&self) -> f32 {
+        self.plane.cost
+    }
+
+    #[inline(always)]
+    pub(super) fn make(self, references: &mut [Reference]) -> Split {
+        Split { middle: partition(references, &self.binning, &self.plane), bounds: self.bounds }
+    }
+
+    /// As [`ObjectSplit::make`], on all threads.
+    pub(super) fn make_together(self, references: &mut [Reference], context: &BuildContext) -> Split {
+        let part = |chunk: &mut [Reference]| {
+            context.vectorize(Partition { references: chunk, binning: &self.binning, plane: &self.plane })
+        };
+        let middles = context.map_chunks(references, part);
+        Split { middle: join_partitions(references, &middles, context), bounds: self.bounds }
+    }
+}
+
+impl BinnedSah {
+    /// Of a ray that meets the leaf's parent.
+    pub(super) fn cost_of_leaf(&self, leaf: &Node) -> f64 {
+        leaf.half_area() * (self.leaf_cost)(leaf.count)
+    }
+
+    #[inline(always)]
+    pub(super) fn find<S: Simd>(
+        &self,
+        simd: S,
+        references: &[Reference],
+        bounds: &Bounds8,
+        bins: &mut Bins,
+    ) -> Option<ObjectSplit> {
+        if references.len() <= self.least_split {
+            return None;
+        }
+        let binning = Binning::new(&centres(references), references.len(), self.bin_count);
+        bins.fill(simd, references, &binning);
+        let plane = self.choose(simd, bins, &binning, bounds, references.len())?;
+        let bounds = bins.unions(simd, &binning, &plane);
+        Some(ObjectSplit { binning, plane, bounds })
+    }
+
+    /// As [`BinnedSah::find`], on all threads.
+    pub(super) fn find_together(
+        &self,
+        references: &[Reference],
+        bounds: &Bounds8,
+        context: &BuildContext,
+    ) -> Option<ObjectSplit> {
+        let centres = |chunk: &[Reference]| context.vectorize(Centres(chunk));
+        let centres = context.reduce_chunks(references, centres, |a, b| a.union(Scalar, &b))?;
+        let binning = Binning::new(&centres, references.len(), self.bin_count);
+        let fill = |chunk: &[Reference]| context.vectorize(Fill { references: chunk, binning: &binning });
+        let mut bins = context.reduce_chunks(references, fill, Bins::merge)?;
+        let plane = self.choose(Scalar, &mut bins, &binning, bounds, references.len())?;
+        let bounds = bins.unions(Scalar, &binning, &plane);
+        Some(ObjectSplit { binning, plane, bounds })
+    }
+}
+
 impl SplitRule for BinnedSah {
     type Scratch = Bins;
 
@@ -67,29 +147,13 @@ impl SplitRule for BinnedSah {
         bounds: &Bounds8,
         bins: &mut Bins,
     ) -> Option<Split> {
-        if references.len() <= self.least_split {
-            return None;
-        }
-        let binning = Binning::new(&centres(references), references.len(), self.bin_count);
-        bins.fill(simd, references, &binning);
-        let plane = self.choose(simd, bins, &binning, bounds, references.len())?;
-        let middle = partition(references, &binning, &plane);
-        Some(Split { middle, bounds: bins.unions(simd, &binning, &plane) })
+        let split = self.find(simd, references, bounds, bins)?;
+        Some(split.make(references))
     }
 
     fn split_together(&self, references: &mut [Reference], bounds: &Bounds8, context: &BuildContext) -> Option<Split> {
-        let centres = |chunk: &[Reference]| context.vectorize(Centres(chunk));
-        let centres = context.reduce_chunks(references, centres, |a, b| a.union(Scalar, &b))?;
-        let binning = Binning::new(&centres, references.len(), self.bin_count);
-        let fill = |chunk: &[Reference]| context.vectorize(Fill { references: chunk, binning: &binning });
-        let mut bins = context.reduce_chunks(references, fill, Bins::merge)?;
-        let plane = self.choose(Scalar, &mut bins, &binning, bounds, references.len())?;
-        let part = |chunk: &mut [Reference]| {
-            context.vectorize(Partition { references: chunk, binning: &binning, plane: &plane })
-        };
-        let middles = context.map_chunks(references, part);
-        let middle = join_partitions(references, &middles, context);
-        Some(Split { middle, bounds: bins.unions(Scalar, &binning, &plane) })
+        let split = self.find_together(references, bounds, context)?;
+        Some(split.make_together(references, context))
     }
 }
 

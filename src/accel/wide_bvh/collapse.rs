@@ -204,6 +204,20 @@ struct Part<'r> {
     references: &'r [Reference],
 }
 
+impl Part<'_> {
+    /// The triangles of a node that becomes a leaf, each once, and which of the subtree's references is their first.
+    fn leaf(&self, node: usize) -> (usize, ArrayVec<Reference, LANES>) {
+        let (first, count) = self.plan.triangles(node);
+        let mut leaf = ArrayVec::<Reference, LANES>::new();
+        for reference in &self.references[first..][..count] {
+            if leaf.iter().all(|other| other.ids() != reference.ids()) {
+                leaf.push(*reference);
+            }
+        }
+        (first, leaf)
+    }
+}
+
 /// Where a subtree hangs in the wide tree.
 #[derive(Clone, Copy)]
 struct Place {
@@ -236,7 +250,6 @@ pub(super) fn collapse<F: LeafForm, T: PrimitiveSource<Primitive = F::Primitive>
         (part.plan.wide_node_count(place.slots), F::subtree_size(part.references, leaves, source))
     });
     let (node_counts, leaf_places): (Vec<usize>, Vec<usize>) = counts.into_iter().unzip();
-    let triangle_count = parts.iter().map(|part| part.references.len()).sum();
     let (mut next_node, mut next_leaf) = (top_nodes.len(), 0);
     for (index, place) in places.iter_mut().enumerate() {
         (place.first_node, place.first_leaf) = (next_node, next_leaf);
@@ -247,7 +260,7 @@ pub(super) fn collapse<F: LeafForm, T: PrimitiveSource<Primitive = F::Primitive>
     let mut nodes = context.filled(next_node, WideNode::EMPTY)?;
     let (above, below) = nodes.split_at_mut(top_nodes.len());
     let root = emit_top::<F>(&top, &top_nodes, &parts, &places, above, source);
-    let mut leaves = Leaves::filled(next_leaf, triangle_count, Ids::new(source.starts()), context)?;
+    let mut leaves = Leaves::filled(next_leaf, Ids::new(source.starts()), context)?;
     let (words, ids) = leaves.parts(&leaf_places);
     let tasks: Vec<_> = parts.into_iter().zip(places).zip(slices(below, &node_counts)).zip(words).collect();
     let shapes = context.map_each(tasks, |(((part, place), nodes), words)| {
@@ -258,7 +271,8 @@ pub(super) fn collapse<F: LeafForm, T: PrimitiveSource<Primitive = F::Primitive>
         Ok(shape)
     });
     let shapes = shapes.into_iter().collect::<Result<Vec<_>, _>>()?;
-    leaves.set_leaf_count(shapes.iter().map(|shape| shape.leaf_count).sum());
+    let leaf_count = shapes.iter().map(|shape| shape.leaf_count).sum();
+    leaves.set_counts(leaf_count, shapes.iter().map(|shape| shape.primitive_count).sum());
     let depth = shapes.iter().map(|shape| shape.depth).max().expect("a tree has a subtree");
     Ok(WideBvh { bounds, corners: bounds.corners4(), root, nodes, leaves, depth, sah_cost: f64::from(top.costs[0]) })
 }
@@ -341,10 +355,10 @@ impl Part<'_> {
         let mut child = |entry: Entry| {
             let node = self.plan.nodes[entry.node];
             if self.plan.choices[entry.node].is_leaf() {
-                let (first, count) = self.plan.triangles(entry.node);
+                let (first, leaf) = self.leaf(entry.node);
                 let at = F::place(first, next_leaf);
-                next_leaf += F::size(&self.references[first..][..count], source);
-                return (node, Child::leaf(place.first_leaf + at, count));
+                next_leaf += F::size(&leaf, source);
+                return (node, Child::leaf(place.first_leaf + at, leaf.len()));
             }
             next_node += 1;
             (node, Child::node(next_node - 1))
@@ -367,13 +381,14 @@ struct Emission<'a, T> {
 
 struct Shape {
     leaf_count: usize,
+    primitive_count: usize,
     depth: u32,
 }
 
 impl<T: PrimitiveSource> Emission<'_, T> {
     fn run<F: LeafForm<Primitive = T::Primitive>>(mut self) -> Shape {
         let plan = &self.part.plan;
-        let mut shape = Shape { leaf_count: 0, depth: self.place.level };
+        let mut shape = Shape { leaf_count: 0, primitive_count: 0, depth: self.place.level };
         let (mut next, mut pending) = (0, Vec::new());
         for entry in plan.entries(0, self.place.slots) {
             self.emit::<F>(entry.node, self.place.level, &mut next, &mut pending, &mut shape);
@@ -401,12 +416,12 @@ impl<T: PrimitiveSource> Emission<'_, T> {
     ) -> Child {
         let plan = &self.part.plan;
         if plan.choices[node].is_leaf() {
-            let (first, count) = plan.triangles(node);
+            let (first, leaf) = self.part.leaf(node);
             let at = F::place(first, self.next_leaf);
-            let references = &self.part.references[first..][..count];
-            self.next_leaf += F::write(self.words, at, references, self.ids, self.source);
+            self.next_leaf += F::write(self.words, at, &leaf, self.ids, self.source);
             shape.leaf_count += 1;
-            return Child::leaf(self.place.first_leaf + at, count);
+            shape.primitive_count += leaf.len();
+            return Child::leaf(self.place.first_leaf + at, leaf.len());
         }
         pending.push((*next, node, level));
         *next += 1;

@@ -297,7 +297,7 @@ mod tests {
         let context = BuildContext::new(None, None, Isa::Auto, &watch);
         let place_count = Compact::subtree_size(&references, runs.iter().copied(), &source);
         let ids = Ids::new(source.starts());
-        let mut leaves = Leaves::<Compact>::filled(place_count, references.len(), ids, &context).expect("no limit");
+        let mut leaves = Leaves::<Compact>::filled(place_count, ids, &context).expect("no limit");
         let (mut words, ids) = leaves.parts(&[place_count]);
         let mut places = vec![0];
         for run in &runs {

@@ -121,14 +121,9 @@ pub(super) struct Leaves<F> {
 
 impl<F: LeafForm> Leaves<F> {
     /// Room for so many places, to be filled leaf by leaf.
-    pub(super) fn filled(
-        place_count: usize,
-        primitive_count: usize,
-        ids: Ids,
-        context: &BuildContext,
-    ) -> Result<Self, BuildFailure> {
+    pub(super) fn filled(place_count: usize, ids: Ids, context: &BuildContext) -> Result<Self, BuildFailure> {
         let words = F::words(place_count, context)?;
-        Ok(Self { words, leaf_count: 0, primitive_count, ids, form: PhantomData })
+        Ok(Self { words, leaf_count: 0, primitive_count: 0, ids, form: PhantomData })
     }
 
     /// The words of runs of so many places each, and the ids to write into them.
@@ -137,8 +132,8 @@ impl<F: LeafForm> Leaves<F> {
         (slices(&mut self.words, &word_counts), &self.ids)
     }
 
-    pub(super) fn set_leaf_count(&mut self, leaf_count: usize) {
-        self.leaf_count = leaf_count;
+    pub(super) fn set_counts(&mut self, leaf_count: usize, primitive_count: usize) {
+        (self.leaf_count, self.primitive_count) = (leaf_count, primitive_count);
     }
 
     /// The words from a leaf's first one on.

@@ -26,7 +26,7 @@ pub(crate) use leaves::{ByAxis, LeafForm};
 use node::{Child, WideNode};
 pub(crate) use sphere_leaves::Spheres;
 
-use super::bvh::{BinnedSah, Morton, build, reinsert};
+use super::bvh::{BinnedSah, Morton, build, reinsert, split_spatial};
 use super::reference::{PrimitiveSource, Reference};
 use super::stats::Shape;
 use super::{Accel, BuildContext, BuildFailure, ClosestHit, Primitive, Quality, Query};
@@ -56,23 +56,28 @@ impl<F: LeafForm> WideBvh<F> {
     ) -> Result<Self, BuildFailure> {
         let count = references.len();
         check_count::<F>(count)?;
-        context.expect(2 * count);
-        let mut tree = match quality {
+        let (mut divided, mut reordered) = (Vec::new(), Vec::new());
+        context.expect(count);
+        let tree = match quality {
             Quality::Low => {
                 let rule = Morton::new(&bounds, LANES);
                 references = rule.sort(references, context)?;
-                build::build(&mut references, &rule, source, context)?
+                context.expect(count);
+                build::build(&mut references, count, &rule, source, context)?
             }
-            Quality::Medium | Quality::High => {
-                build::build(&mut references, &BinnedSah::FOR_WIDE_LEAVES, source, context)?
+            Quality::Medium => {
+                context.expect(count);
+                build::build(&mut references, count, &BinnedSah::FOR_WIDE_LEAVES, source, context)?
+            }
+            Quality::High => {
+                let (rule, most) = (BinnedSah::FOR_WIDE_LEAVES, F::MOST_PRIMITIVES);
+                let tree = split_spatial::build(&mut references, &mut divided, rule, most, source, context)?;
+                reinsert::reinsert(tree, &mut reordered, context)?
             }
         };
-        let mut reordered = Vec::new();
-        if quality == Quality::High {
-            tree = reinsert::reinsert(tree, &mut reordered, context)?;
-        }
         let wide = collapse::collapse(tree, bounds, source, context)?;
         context.release(references);
+        context.release(divided);
         context.release(reordered);
         #[cfg(any(test, debug_assertions))]
         wide.validate().expect("a builder keeps the tree's invariants");

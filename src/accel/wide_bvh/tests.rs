@@ -66,18 +66,36 @@ fn small_triangle(id: u32, size: f32) -> [[f32; 3]; 3] {
 
 const QUALITIES: [Quality; 3] = [Quality::Low, Quality::Medium, Quality::High];
 
+/// Among small ones every twentieth is long and thin, along the diagonal of the axes.
+fn diagonals(count: u32) -> Soup {
+    Soup::new(count, |id| {
+        let size = if id % 20 == 0 { 0.25 } else { 0.005 };
+        let [start, right, above] = small_triangle(id, size);
+        if id % 20 == 0 {
+            [start, [right[0], above[1], above[2]], [right[0], above[1] + 0.0025, above[2]]]
+        } else {
+            [start, right, above]
+        }
+    })
+}
+
 /// Whether threads and instruction sets make no difference to the bytes of a tree.
 fn check_bytes<F: TriangleForm>() {
     let soup = Soup::new(60_000, |id| small_triangle(id, if id % 100 == 0 { 0.3 } else { 0.01 }));
     for quality in QUALITIES {
-        let expected: WideBvh<F> = soup.build_in_form(quality, Isa::Scalar, 1);
-        for (isa, thread_count) in [(Isa::Auto, 1), (Isa::Sse42, 2), (Isa::Auto, 2), (Isa::Auto, 3)] {
-            let other: WideBvh<F> = soup.build_in_form(quality, isa, thread_count);
-            let is_same = other.root == expected.root
-                && format!("{:?}", other.nodes) == format!("{:?}", expected.nodes)
-                && other.leaves.bits().eq(expected.leaves.bits());
-            assert!(is_same, "{quality:?} {isa:?} {thread_count} threads");
-        }
+        check_bytes_of::<F>(&soup, quality);
+    }
+    check_bytes_of::<F>(&diagonals(20_000), Quality::High);
+}
+
+fn check_bytes_of<F: TriangleForm>(soup: &Soup, quality: Quality) {
+    let expected: WideBvh<F> = soup.build_in_form(quality, Isa::Scalar, 1);
+    for (isa, thread_count) in [(Isa::Auto, 1), (Isa::Sse42, 2), (Isa::Auto, 2), (Isa::Auto, 3)] {
+        let other: WideBvh<F> = soup.build_in_form(quality, isa, thread_count);
+        let is_same = other.root == expected.root
+            && format!("{:?}", other.nodes) == format!("{:?}", expected.nodes)
+            && other.leaves.bits().eq(expected.leaves.bits());
+        assert!(is_same, "{quality:?} {isa:?} {thread_count} threads");
     }
 }
 
@@ -111,6 +129,16 @@ fn leaves_of<F: TriangleForm>(bvh: &WideBvh<F>) -> Vec<Child> {
         );
     }
     found
+}
+
+#[test]
+fn high_cuts_long_diagonal_triangles_and_no_others() {
+    // The build validates that the parts cover them.
+    let soup = diagonals(20_000);
+    let high = soup.build(Quality::High, Isa::Auto, 2).shape();
+    assert!(high.reference_count > 21_000 && high.reference_count <= 25_000, "{} references", high.reference_count);
+    let soup = height_field(100);
+    assert_eq!(soup.build(Quality::High, Isa::Auto, 2).shape().reference_count, soup.triangles.len());
 }
 
 #[test]
