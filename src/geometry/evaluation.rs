@@ -48,6 +48,8 @@ pub(crate) enum Evaluation {
     /// `t_error`. The exact one is `t_per_volume`, which is good to 2^-31, times the volume between the triangle and
     /// the ray's origin.
     Near { hit: TriangleHit, t: f64, t_error: f64, t_per_volume: f64 },
+    /// `t` is below 0, certainly, and does not round to 0: told only where `t_min` is not below 0.
+    Behind,
     /// The ray passes the triangle, certainly.
     Outside,
     /// The error bound is too large to tell: the triangle is seen edge-on, or is a sliver far away.
@@ -63,8 +65,10 @@ impl Evaluation {
     /// The same with coarser bounds: `s` is the sum over all three vertices, and `m |dz| <= s + |dz| max |az|`, because
     /// `ax dz = x + dx az` and `|dx| <= |dz|`.
     #[inline(always)]
-    pub(super) fn inside<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Self> {
+    pub(super) fn inside<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Self> {
         const E: f64 = f64::UNIT_ROUNDOFF;
+        /// With vertices this far away for each length of the direction, `t` beyond its bound is no denormal.
+        const LEAST_DEPTH: f64 = 1.0 / (1u128 << 64) as f64;
         let [kx, ky, kz] = ray.axes;
         let splat = |values: &[f32; 4], axis: usize| simd.splat3(values[axis & 3]);
         let (dx, dy, dz) = (splat(&ray.direction, kx), splat(&ray.direction, ky), splat(&ray.direction, kz));
@@ -91,11 +95,16 @@ impl Evaluation {
         }
         let [az, bz, cz] = simd.values3(simd.mul3(weights, az));
         let weighted = az + bz + cz;
+        let t_bound = (6.0 * bound + 5.0 * E * sum.abs()) * depth;
+        // A ray that leaves a surface finds its own triangle so, without waiting for the division.
+        if (t_min >= 0.0) & (weighted * sum * dz < 0.0) & (weighted.abs() > t_bound) & (depth > LEAST_DEPTH * dz.abs())
+        {
+            return Some(Self::Behind);
+        }
         let inverse = 1.0 / (sum * dz);
         let t = weighted * inverse;
         let per_sum = dz * inverse;
         let hit = TriangleHit { t: t as f32, u: (b * per_sum) as f32, v: (c * per_sum) as f32 };
-        let t_bound = (6.0 * bound + 5.0 * E * sum.abs()) * depth;
         if t_bound > RELATIVE_ERROR * weighted.abs() {
             return Some(Self::Near { hit, t, t_error: 2.0 * t_bound * inverse.abs(), t_per_volume: -dz / sum });
         }

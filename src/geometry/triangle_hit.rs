@@ -93,7 +93,7 @@ pub(crate) trait PrecisionMode {
     ) -> Option<TriangleHit>;
 
     /// For such a triangle what the answer is made of, where that does not need more.
-    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Evaluation>;
+    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Evaluation>;
 }
 
 /// From the coordinates that decided, in `f32`: off by as much as those are.
@@ -157,8 +157,9 @@ impl TriangleRay {
         interval: Interval,
         triangle: impl FnOnce() -> Triangle,
     ) -> Option<TriangleHit> {
-        match P::evaluate_certain(simd, self, corners) {
+        match P::evaluate_certain(simd, self, corners, interval.t_min) {
             Some(Evaluation::Inside(hit)) => interval.contains(hit.t).then_some(hit),
+            Some(Evaluation::Behind) => None,
             Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
             _ => self.hit_slowly::<P>(&triangle(), interval),
         }
@@ -268,7 +269,7 @@ impl PrecisionMode for Fast {
     }
 
     #[inline(always)]
-    fn evaluate_certain<S: Simd>(_simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Evaluation> {
+    fn evaluate_certain<S: Simd>(_simd: S, ray: &TriangleRay, corners: &Corners, _t_min: f32) -> Option<Evaluation> {
         let (x, y, z) = ray.shear(corners);
         Self::evaluate_sheared(ray, corners, &edge_functions(&x, &y), &z).map(Evaluation::Inside)
     }
@@ -293,10 +294,11 @@ impl PrecisionMode for Accurate {
         sheared: &Weights<f64>,
         interval: Interval,
     ) -> Option<TriangleHit> {
-        match Evaluation::inside(Scalar, ray, &ray.corners(triangle))
+        match Evaluation::inside(Scalar, ray, &ray.corners(triangle), interval.t_min)
             .unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle))
         {
             Evaluation::Inside(hit) => Some(hit),
+            Evaluation::Behind => None,
             Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => None,
             Evaluation::Outside => Some(within_the_band(ray, triangle, sheared)),
             Evaluation::Near { hit, .. } => evaluate_slowly(ray, triangle, interval, || hit),
@@ -307,8 +309,8 @@ impl PrecisionMode for Accurate {
     }
 
     #[inline(always)]
-    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners) -> Option<Evaluation> {
-        Evaluation::inside(simd, ray, corners)
+    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Evaluation> {
+        Evaluation::inside(simd, ray, corners, t_min)
     }
 }
 
@@ -328,6 +330,7 @@ fn evaluate_slowly(
             let t = t_per_volume * triangle.signed_volume([ray.origin[0], ray.origin[1], ray.origin[2]]);
             Some(TriangleHit { t: t as f32, ..hit })
         }
+        Evaluation::Behind => None,
         Evaluation::Outside | Evaluation::Uncertain => Some(otherwise()),
     }
 }
