@@ -5,7 +5,8 @@ use arrayvec::ArrayVec;
 use super::SpaceTree;
 use super::node::{MOST_LEVELS, Node};
 use crate::accel::Primitive;
-use crate::accel::leaf::{ClosestHit, Query, test_each};
+use crate::accel::leaf::{ClosestHit, Query};
+use crate::accel::listed::{Mailbox, test_listed};
 use crate::accel::tally::Tally;
 use crate::accel::walk_ray::{Span, WalkRay};
 use crate::geometry::{PrecisionMode, Ray};
@@ -67,6 +68,7 @@ impl<T: Primitive> SpaceTree<T> {
         let mut best = ClosestHit::none(ray);
         let mut stack = ArrayVec::<Pending, MOST_LEVELS>::new_const();
         let mut node = self.root;
+        let mut mailbox = Mailbox::EMPTY;
         loop {
             while !node.is_leaf() {
                 tally.visit_node();
@@ -87,8 +89,8 @@ impl<T: Primitive> SpaceTree<T> {
             tally.step_cell();
             let list = &self.lists[node.list()];
             if !list.is_empty() {
-                tally.test_primitives(list.len());
-                if self.test_list::<Q, P>(list, &primitive_ray, ray.t_min, &mut best) {
+                let ray = (&primitive_ray, ray.t_min);
+                if test_listed::<Q, P, T>(list, &self.primitives, &mut mailbox, ray, &mut best, tally) {
                     break;
                 }
             }
@@ -102,18 +104,5 @@ impl<T: Primitive> SpaceTree<T> {
             };
         }
         best.found()
-    }
-
-    /// Out of line: inlined it takes registers from the descent.
-    #[inline(never)]
-    fn test_list<Q: Query, P: PrecisionMode>(
-        &self,
-        list: &[u32],
-        ray: &T::Ray,
-        t_min: f32,
-        best: &mut ClosestHit<T>,
-    ) -> bool {
-        let primitives = list.iter().map(|&index| &self.primitives[index as usize]);
-        test_each::<Q, P, T>(primitives, ray, t_min, best)
     }
 }
