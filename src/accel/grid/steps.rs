@@ -91,13 +91,18 @@ impl<'r, const SIZE: u32> Steps<'r, SIZE> {
     #[inline(always)]
     pub(super) fn advance(&mut self) -> bool {
         let [x, y, z] = self.leave;
-        let axis = if x <= y {
-            if x <= z { 0 } else { 2 }
+        // Written out axis by axis, so that a walk stays in registers.
+        if x <= y {
+            if x <= z { self.advance_along(0) } else { self.advance_along(2) }
         } else if y <= z {
-            1
+            self.advance_along(1)
         } else {
-            2
-        };
+            self.advance_along(2)
+        }
+    }
+
+    #[inline(always)]
+    fn advance_along(&mut self, axis: usize) -> bool {
         self.at[axis] = self.at[axis].wrapping_add(self.step[axis]);
         if self.at[axis] == self.outside[axis] {
             return false;

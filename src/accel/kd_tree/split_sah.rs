@@ -8,7 +8,9 @@ use crate::accel::Reference;
 use crate::accel::space_tree::{Split, split_cost};
 use crate::geometry::Aabb;
 
-pub(super) const PRIMITIVE_COST: f64 = 1.0;
+/// In steps down. Measured: 0.3 to 2 on a scan, a board, an engine, a house and a soup; the least makes the fastest rays and
+/// builds, because a step waits for the one before and most primitives are refused early.
+pub(super) const PRIMITIVE_COST: f64 = 0.3;
 
 /// Larger cells are binned.
 const MOST_SWEPT: usize = 128;
