@@ -286,7 +286,7 @@ mod tests {
         let (below, above) = (rational(f64::from(t) - ulps * ulp), rational(f64::from(t) + ulps * ulp));
         let vertex = -h / a;
         let (at_below, at_above) = (value(&below), value(&above));
-        (&at_below <= &zero) != (&at_above < &zero) || (below <= vertex && vertex <= above && value(&vertex) <= zero)
+        (at_below <= zero) != (at_above < zero) || (below <= vertex && vertex <= above && value(&vertex) <= zero)
     }
 
     fn coordinate() -> impl Strategy<Value = f32> {

@@ -121,7 +121,7 @@ impl<S: PrimitiveSource> Divide for AnyPlanes<'_, S> {
     fn cut(&self, piece: &Self::Piece, split: &Split, _cells: &[Cell; 2]) -> [Self::Piece; 2] {
         let height = height_of(split);
         // Both are there: the piece reaches over the plane on both sides.
-        let below = piece.part.below(&height).unwrap_or(piece.part);
+        let below = piece.part.below(height).unwrap_or(piece.part);
         let above = piece.part.below(|point| -height(point)).unwrap_or(piece.part);
         [below, above].map(|part| Piece { part, ..*piece })
     }

@@ -55,16 +55,16 @@ impl Extents {
     const EMPTY: Self = Self { lower: [f64::INFINITY; 3], upper: [f64::NEG_INFINITY; 3] };
 
     fn grow(&mut self, point: &[f64; 3]) {
-        for axis in 0..3 {
-            self.lower[axis] = self.lower[axis].min(point[axis]);
-            self.upper[axis] = self.upper[axis].max(point[axis]);
+        for (axis, &coordinate) in point.iter().enumerate() {
+            self.lower[axis] = self.lower[axis].min(coordinate);
+            self.upper[axis] = self.upper[axis].max(coordinate);
         }
     }
 
     fn enlarged(mut self, by: &[f64; 3]) -> Self {
-        for axis in 0..3 {
-            self.lower[axis] -= by[axis];
-            self.upper[axis] += by[axis];
+        for (axis, by) in by.iter().enumerate() {
+            self.lower[axis] -= by;
+            self.upper[axis] += by;
         }
         self
     }

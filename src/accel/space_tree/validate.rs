@@ -6,6 +6,9 @@ use super::SpaceTree;
 use super::node::{MOST_LEVELS, Node};
 use crate::accel::{Part, Primitive};
 
+/// What of each primitive is in a cell.
+type Parts<T> = Vec<(usize, <T as Primitive>::Part)>;
+
 impl<T: Primitive> SpaceTree<T> {
     /// The lists are in range, every primitive is in one, and the stack suffices.
     pub(super) fn validate_lists(&self) -> Result<(), String> {
@@ -38,7 +41,7 @@ impl<T: Primitive> SpaceTree<T> {
     /// along an axis. `plane` has an inner node's normal and distance.
     pub(in crate::accel) fn validate(&self, reach: f64, plane: impl Fn(Node) -> (DVec3, f64)) -> Result<(), String> {
         let whole = self.primitives.iter().enumerate().map(|(index, primitive)| (index, primitive.whole())).collect();
-        let mut pending: Vec<(Node, Vec<(usize, T::Part)>)> = vec![(self.root, whole)];
+        let mut pending: Vec<(Node, Parts<T>)> = vec![(self.root, whole)];
         while let Some((node, parts)) = pending.pop() {
             if node.is_leaf() {
                 let list = &self.lists[node.list()];
