@@ -10,7 +10,7 @@ JOBS ?= $(shell nproc)
 ctest = ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
 .DEFAULT_GOAL := help
-.PHONY: help build compare bench test test-slow hard check test-rust test-c test-sanitized format clean packages packages-test cargo
+.PHONY: help build compare bench structures test test-slow hard check test-rust test-c test-sanitized format clean packages packages-test cargo
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -30,9 +30,15 @@ compare: build ## Compare with Embree; SCENE="file.glb gen:NAME ..." OUT=dir ARG
 	exit $$status
 
 bench: OUT ?= $(BUILD)/bench
-bench: build ## Measure against Embree and the project's bars, about 12 minutes; ARGS=--quick, SCENE= and OUT= as above
+bench: build ## Measure against Embree and the project's bars, about 20 minutes; ARGS=--quick, SCENE= and OUT= as above
 	@mkdir -p $(OUT)
 	@$(BUILD)/bin/gnomon-bench --json $(OUT)/bench.json --html $(OUT)/report.html $(ARGS) $(SCENE)
+	@echo "results: $(OUT)/bench.json and $(OUT)/report.html"
+
+structures: OUT ?= $(BUILD)/structures
+structures: build ## Which structure when: each beside the scalar BVH, about 7 minutes; ARGS=--quick, SCENE= and OUT= as above
+	@mkdir -p $(OUT)
+	@$(BUILD)/bin/gnomon-bench --structures --json $(OUT)/bench.json --html $(OUT)/report.html $(ARGS) $(SCENE)
 	@echo "results: $(OUT)/bench.json and $(OUT)/report.html"
 
 test: packages-test cargo check test-rust test-sanitized test-c ## Check the style and run all but the slow tests

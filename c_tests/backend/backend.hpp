@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -25,6 +26,7 @@ struct BuildReport {
     std::uint32_t threads = 0;
     double seconds = 0;
     std::uint64_t triangles = 0, bytes = 0, nodes = 0, references = 0, depth = 0;
+    double sah_cost = std::numeric_limits<double>::quiet_NaN();  // NaN where an engine or a structure has none
 };
 
 /// fresh: each ray is written field by field right before its call and its answer read right after;

@@ -134,6 +134,7 @@ private:
         report_.nodes = stats.node_count;
         report_.references = stats.reference_count;
         report_.depth = stats.depth;
+        report_.sah_cost = stats.sah_cost;
     }
 
     SceneHandle scene_;

@@ -4,8 +4,8 @@
 #include <array>
 #include <functional>
 
+#include "bench/bar.hpp"
 #include "bench/growth.hpp"
-#include "bench/statistics.hpp"
 #include "compare/text_table.hpp"
 
 namespace harness {
@@ -14,18 +14,7 @@ namespace {
 constexpr std::array ray_kinds = {"primary", "bounce", "shadow", "random"};
 constexpr std::array built_up = {"spaceship", "mansion", "dsub62", "2cylinderengine"};  // architecture and CAD
 constexpr std::size_t large_scene = 500'000;
-constexpr std::size_t least_of_a_million = 800'000, most_of_a_million = 1'100'000;
 constexpr double most_us_per_degenerate_ray = 20;
-
-/// A camera that sees less, or bounces of which nearly all leave the scene at once, measure calls rather than traversal.
-constexpr double least_hit_share_of_camera = 0.5, least_hit_share_of_bounces = 0.05;
-
-/// One figure of one scene.
-struct Sample {
-    double value;
-    std::string where;
-};
-using Samples = std::vector<Sample>;
 
 std::string lowercase(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -49,10 +38,8 @@ struct Wanted {
 void collect(const SceneBench& scene, const Wanted& wanted, Samples& samples) {
     for (const Timing& timing : scene.timings) {
         const RaySetInfo& set = scene.ray_sets[timing.ray_set];
-        const bool blind = (set.kind == "primary" && set.hit_share < least_hit_share_of_camera) ||
-                           (set.kind == "bounce" && set.hit_share < least_hit_share_of_bounces);
         const bool fits = (wanted.kind.empty() || set.kind == wanted.kind) && timing.call == wanted.call && timing.ratio &&
-                          (timing.threads > 1) == wanted.scaling && wanted.build(scene.builds[timing.build]) && !blind;
+                          (timing.threads > 1) == wanted.scaling && wanted.build(scene.builds[timing.build]) && !is_blind(set);
         if (fits) samples.push_back({*timing.ratio, scene.name + (set.view.empty() ? "" : " " + set.view)});
     }
 }
@@ -70,58 +57,6 @@ Samples samples_of(const BenchResults& results, const Wanted& wanted) {
     return {};
 }
 
-double median_of(const Samples& samples) {
-    std::vector<double> values;
-    for (const Sample& sample : samples) values.push_back(sample.value);
-    return median(values);
-}
-
-bool by_value(const Sample& a, const Sample& b) { return a.value < b.value; }
-
-/// The median must not be below `least`, nor any scene below `least_anywhere`.
-Bar speed_bar(const std::string& what, const Samples& samples, double least, const std::string& stretch,
-              std::optional<double> least_anywhere = {}) {
-    Bar bar;
-    bar.what = what;
-    bar.bar = ">= " + figure(least, "%.2f");
-    if (least_anywhere) bar.bar += ", none < " + figure(*least_anywhere, "%.2f");
-    bar.stretch = stretch;
-    bar.sample_count = samples.size();
-    if (samples.empty()) return bar;
-    bar.value = median_of(samples);
-    bar.measured = figure(*bar.value, "%.2f");
-    const Sample& worst = *std::min_element(samples.begin(), samples.end(), by_value);
-    bar.worst = worst.value;
-    bar.worst_where = worst.where;
-    bar.measured += " (worst " + figure(worst.value, "%.2f") + ", " + worst.where + ")";
-    const bool pass = *bar.value >= least && (!least_anywhere || *bar.worst >= *least_anywhere);
-    bar.verdict = pass ? BarVerdict::pass : BarVerdict::short_of;
-    return bar;
-}
-
-/// What counts, the median or the worst, must not be above `most`.
-enum class Counts { median, worst };
-Bar cost_bar(const std::string& what, const Samples& samples, Counts counts, double most, const std::string& unit,
-             const std::string& stretch) {
-    Bar bar;
-    bar.what = what;
-    bar.bar = "<= " + figure(most, "%.3g") + unit;
-    bar.stretch = stretch;
-    bar.sample_count = samples.size();
-    if (samples.empty()) return bar;
-    const Sample& worst = *std::max_element(samples.begin(), samples.end(), by_value);
-    bar.value = median_of(samples);
-    bar.worst = worst.value;
-    bar.worst_where = worst.where;
-    const double counted = counts == Counts::median ? *bar.value : *bar.worst;
-    bar.measured = figure(counted, "%.2f") + unit;
-    if (counts == Counts::median && samples.size() > 1)
-        bar.measured += " (worst " + figure(worst.value, "%.2f") + ", " + worst.where + ")";
-    if (counts == Counts::worst) bar.measured += " (" + worst.where + ")";
-    bar.verdict = counted <= most ? BarVerdict::pass : BarVerdict::short_of;
-    return bar;
-}
-
 bool is_not_built(const BenchResults& results, const std::string& contender) {
     return std::any_of(results.scenes.begin(), results.scenes.end(), [&](const SceneBench& scene) {
         return std::find(scene.not_built.begin(), scene.not_built.end(), contender) != scene.not_built.end();
@@ -137,7 +72,7 @@ Bar unless_built(Bar bar, bool not_built) {
 Samples build_samples(const BenchResults& results, const std::string& contender) {
     Samples samples;
     for (const SceneBench& scene : results.scenes) {
-        if (scene.triangle_count < least_of_a_million || scene.triangle_count > most_of_a_million) continue;
+        if (!is_about_a_million(scene.triangle_count)) continue;
         for (const BuildTiming& build : scene.builds) {
             if (build.contender == contender && build.time_ratio) samples.push_back({*build.time_ratio, scene.name});
         }
@@ -234,19 +169,6 @@ std::vector<Bar> judge_bars(const BenchResults& results) {
     add_build_bars(bars, results);
     add_limit_bars(bars, results);
     return bars;
-}
-
-std::string verdict_name(BarVerdict verdict) {
-    switch (verdict) {
-        case BarVerdict::pass:
-            return "pass";
-        case BarVerdict::short_of:
-            return "short";
-        case BarVerdict::not_built:
-            return "not built";
-        default:
-            return "not measured";
-    }
 }
 
 }  // namespace harness

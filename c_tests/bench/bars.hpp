@@ -12,7 +12,4 @@ namespace harness {
 /// the generated ones where there is none from a file that is large enough; views that see next to nothing do not count.
 std::vector<Bar> judge_bars(const BenchResults& results);
 
-/// "pass", "short", "not built", "not measured".
-std::string verdict_name(BarVerdict verdict);
-
 }  // namespace harness

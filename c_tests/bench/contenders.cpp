@@ -11,16 +11,6 @@
 namespace harness {
 namespace {
 
-Plan gnomon_plan(const std::string& name, const BenchOptions& options) {
-    Plan plan;
-    plan.name = name;
-    gnomon_build_options_init(&plan.build);
-    plan.build.precision = GNOMON_PRECISION_ACCURATE;
-    plan.build.thread_count = options.threads;
-    plan.build.invalid_triangles = GNOMON_INVALID_SKIP;  // as Embree does
-    return plan;
-}
-
 Plan gnomon_quality(const std::string& name, std::uint32_t quality, const BenchOptions& options) {
     Plan plan = gnomon_plan(name, options);
     plan.build.quality = quality;
@@ -79,6 +69,16 @@ void summarize(Contender& contender, const Seconds& seconds) {
 }
 
 }  // namespace
+
+Plan gnomon_plan(const std::string& name, const BenchOptions& options) {
+    Plan plan;
+    plan.name = name;
+    gnomon_build_options_init(&plan.build);
+    plan.build.precision = GNOMON_PRECISION_ACCURATE;
+    plan.build.thread_count = options.threads;
+    plan.build.invalid_triangles = GNOMON_INVALID_SKIP;  // as Embree does
+    return plan;
+}
 
 std::vector<Plan> bench_plans(const BenchOptions& options) {
     const bool with_embree = !embree_version().empty();

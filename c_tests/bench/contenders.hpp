@@ -25,6 +25,9 @@ struct Plan {
     bool traced = true;
 };
 
+/// ACCURATE, MEDIUM and AUTO on options.threads, built once, and traced.
+Plan gnomon_plan(const std::string& name, const BenchOptions& options);
+
 /// Embree's plans are there only where this program was built with it. A cap on the instruction set that comes to one of the
 /// other plans is left out.
 std::vector<Plan> bench_plans(const BenchOptions& options);

@@ -1,8 +1,8 @@
 #include "bench/growth.hpp"
 
+#include <algorithm>
 #include <cmath>
 
-#include "bench/contenders.hpp"
 #include "bench/trace.hpp"
 #include "bench/views.hpp"
 #include "scene/load.hpp"
@@ -10,13 +10,11 @@
 namespace harness {
 namespace {
 
-constexpr std::size_t first_step = 1'000;
 constexpr std::size_t outside_ray_sets = 4;
 
 /// Small builds are short: more of them to find the least.
-BenchOptions options_for(std::size_t triangle_count, BenchOptions options) {
-    options.build_repeats = triangle_count <= 10'000 ? 20 : triangle_count <= 1'000'000 ? 5 : 2;
-    return options;
+std::uint32_t build_repeats_of(std::size_t triangle_count) {
+    return triangle_count <= 10'000 ? 20 : triangle_count <= 1'000'000 ? 5 : 2;
 }
 
 std::vector<Plan> growth_plans(const BenchOptions& options) {
@@ -37,15 +35,15 @@ void compare_with_step_before(Growth& growth, const std::vector<Growth>& steps) 
     }
 }
 
-void measure_step(std::size_t triangle_count, const BenchOptions& options, std::vector<Growth>& steps,
-                  std::vector<std::string>& notes) {
-    const Scene scene = generate_scene("terrain", triangle_count);
-    const std::vector<Plan> plans = growth_plans(options);
+void measure_step(const GrowthCase& growth_case, std::size_t triangle_count, const BenchOptions& options,
+                  std::vector<Growth>& steps, std::vector<std::string>& notes) {
+    const Scene scene = generate_scene(growth_case.generator, triangle_count);
+    const std::vector<Plan> plans = growth_case.plans(triangle_count);
     Progress progress(build_step_count(plans, options) + outside_ray_sets * pass_count(options.repeats), "growth");
     std::vector<std::string> not_built;
     std::vector<Contender> contenders = build_contenders(scene, plans, options, progress, not_built, notes);
-    const auto gnomon = find_contender(contenders, "gnomon");
-    if (!gnomon) return;
+    const auto tracing = find_contender(contenders, growth_case.tracer);
+    if (!tracing) return;
 
     std::vector<Growth> step;
     for (const Contender& contender : contenders) {
@@ -58,12 +56,12 @@ void measure_step(std::size_t triangle_count, const BenchOptions& options, std::
         compare_with_step_before(growth, steps);
         step.push_back(growth);
     }
-    const Tracer tracer = tracer_of(*contenders[*gnomon].backend);
+    const Tracer tracer = tracer_of(*contenders[*tracing].backend);
     const std::vector<View> outside = {bench_views(scene, tracer).front()};
     for (const ViewRays& rays : bench_rays(scene, outside, tracer, options.ray_count)) {
         progress.set_label("growth: traces " + rays.set.kind + " rays");
-        for (const Timing& timing :
-             trace_interleaved(contenders, fresh_runs(contenders), rays.set, 0, options.repeats, progress)) {
+        if (rays.set.rays.empty()) continue;
+        for (const Timing& timing : growth_case.trace(contenders, rays.set, progress)) {
             step[timing.build].ns_per_ray.emplace_back(rays.set.kind, timing.ns_per_ray);
         }
     }
@@ -72,12 +70,23 @@ void measure_step(std::size_t triangle_count, const BenchOptions& options, std::
 
 }  // namespace
 
-std::vector<Growth> measure_growth(const BenchOptions& options, std::vector<std::string>& notes) {
+std::vector<Growth> measure_steps(const GrowthCase& growth_case, const BenchOptions& options, std::vector<std::string>& notes) {
     std::vector<Growth> steps;
-    for (std::size_t count = first_step; count <= options.most_triangles; count *= 10) {
-        measure_step(count, options_for(count, options), steps, notes);
+    for (std::size_t count = growth_case.first_step; count <= growth_case.last_step; count *= 10) {
+        BenchOptions step_options = options;
+        step_options.build_repeats = std::min(build_repeats_of(count), growth_case.most_build_repeats);
+        measure_step(growth_case, count, step_options, steps, notes);
     }
     return steps;
+}
+
+std::vector<Growth> measure_growth(const BenchOptions& options, std::vector<std::string>& notes) {
+    GrowthCase hills{"terrain", 1'000, options.most_triangles, 20, "gnomon", {}, {}};
+    hills.plans = [&](std::size_t) { return growth_plans(options); };
+    hills.trace = [&](std::vector<Contender>& contenders, const RaySet& set, Progress& progress) {
+        return trace_interleaved(contenders, fresh_runs(contenders), set, 0, options.repeats, progress);
+    };
+    return measure_steps(hills, options, notes);
 }
 
 }  // namespace harness

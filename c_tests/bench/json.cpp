@@ -1,6 +1,7 @@
 #include "bench/json.hpp"
 
-#include "bench/bars.hpp"
+#include "bench/bar.hpp"
+#include "bench/structures/json.hpp"
 #include "bench/trace.hpp"
 #include "compare/json.hpp"
 
@@ -40,7 +41,8 @@ Json build_json(const SceneBench& scene, const BuildTiming& build) {
             {"bytes_per_triangle", number(per_triangle)},
             {"nodes", report.nodes},
             {"references", report.references},
-            {"depth", report.depth}};
+            {"depth", report.depth},
+            {"sah_cost", number(report.sah_cost)}};
 }
 
 Json ray_set_json(const SceneBench& scene, const RaySetInfo& set) {
@@ -76,20 +78,6 @@ Json timing_json(const SceneBench& scene, const Timing& timing) {
             {"differing_answers", timing.differing ? Json(*timing.differing) : Json(nullptr)}};
 }
 
-Json growth_json(const Growth& growth) {
-    Json ns = Json::object();
-    for (const auto& [kind, value] : growth.ns_per_ray) ns[kind] = number(value);
-    const bool first = growth.step == 0;
-    return {{"engine", growth.engine},
-            {"triangles", growth.triangle_count},
-            {"build_seconds", growth.build_seconds},
-            {"bytes_per_triangle", number(growth.bytes_per_triangle)},
-            {"ns_per_ray", ns},
-            {"step", first ? Json(nullptr) : number(growth.step)},
-            {"n_log_n_step", first ? Json(nullptr) : number(growth.n_log_n_step)},
-            {"within_n_log_n", growth.within_n_log_n}};
-}
-
 Json degenerate_json(const Degenerate& row) {
     const bool failed = !row.failure.empty();
     return {{"scene", row.scene},
@@ -102,9 +90,29 @@ Json degenerate_json(const Degenerate& row) {
             {"failure", optional_text(row.failure)}};
 }
 
+}  // namespace
+
+Json kinds_json(const std::vector<std::pair<std::string, double>>& figures) {
+    Json json = Json::object();
+    for (const auto& [kind, value] : figures) json[kind] = number(value);
+    return json;
+}
+
+Json growth_json(const Growth& growth) {
+    const bool first = growth.step == 0;
+    return {{"engine", growth.engine},
+            {"triangles", growth.triangle_count},
+            {"build_seconds", growth.build_seconds},
+            {"bytes_per_triangle", number(growth.bytes_per_triangle)},
+            {"ns_per_ray", kinds_json(growth.ns_per_ray)},
+            {"step", first ? Json(nullptr) : number(growth.step)},
+            {"n_log_n_step", first ? Json(nullptr) : number(growth.n_log_n_step)},
+            {"within_n_log_n", growth.within_n_log_n}};
+}
+
 Json bar_json(const Bar& bar) {
     return {{"what", bar.what},
-            {"bar", bar.bar},
+            {"bar", optional_text(bar.bar)},
             {"stretch", optional_text(bar.stretch)},
             {"measured", optional_text(bar.measured)},
             {"value", optional_number(bar.value)},
@@ -114,7 +122,12 @@ Json bar_json(const Bar& bar) {
             {"verdict", verdict_name(bar.verdict)}};
 }
 
-}  // namespace
+void push_scene(Json& json, const SceneBench& scene) {
+    json["scenes"].push_back(scene_json(scene));
+    for (const BuildTiming& build : scene.builds) json["builds"].push_back(build_json(scene, build));
+    for (const RaySetInfo& set : scene.ray_sets) json["ray_sets"].push_back(ray_set_json(scene, set));
+    for (const Timing& timing : scene.timings) json["speeds"].push_back(timing_json(scene, timing));
+}
 
 Json bench_json(const BenchResults& results) {
     Json json = heading_json(this_machine(), these_versions());
@@ -123,12 +136,7 @@ Json bench_json(const BenchResults& results) {
     for (const char* rows : {"scenes", "builds", "ray_sets", "speeds", "calls", "growth", "degenerate", "bars"}) {
         json[rows] = Json::array();
     }
-    for (const SceneBench& scene : results.scenes) {
-        json["scenes"].push_back(scene_json(scene));
-        for (const BuildTiming& build : scene.builds) json["builds"].push_back(build_json(scene, build));
-        for (const RaySetInfo& set : scene.ray_sets) json["ray_sets"].push_back(ray_set_json(scene, set));
-        for (const Timing& timing : scene.timings) json["speeds"].push_back(timing_json(scene, timing));
-    }
+    for (const SceneBench& scene : results.scenes) push_scene(json, scene);
     for (const CallCost& cost : results.call_costs) {
         json["calls"].push_back({{"scene", cost.scene},
                                  {"engine", cost.engine},
@@ -138,6 +146,7 @@ Json bench_json(const BenchResults& results) {
     for (const Growth& growth : results.growth) json["growth"].push_back(growth_json(growth));
     for (const Degenerate& row : results.degenerate) json["degenerate"].push_back(degenerate_json(row));
     for (const Bar& bar : results.bars) json["bars"].push_back(bar_json(bar));
+    json["structures"] = structures_json(results.structures);
     return json;
 }
 

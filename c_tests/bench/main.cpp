@@ -12,6 +12,7 @@
 #include "bench/options.hpp"
 #include "bench/scene_bench.hpp"
 #include "bench/scenes.hpp"
+#include "bench/structures/run.hpp"
 #include "bench/table.hpp"
 #include "harness/write_file.hpp"
 #include "scene/load.hpp"
@@ -48,17 +49,20 @@ BenchResults run(const BenchOptions& options) {
     BenchResults results;
     std::size_t printed = 0;
     const Clock::time_point start = Clock::now();
-    if (embree_version().empty())
+    const bool beside_embree = options.parts != std::vector<std::string>{"structures"};
+    if (beside_embree && embree_version().empty())
         results.notes.push_back("built without Embree: gnomon is measured alone, and there are no ratios");
     print_notes(results, printed);
     if (options.has_part("scenes")) run_scenes(options, results, printed);
     if (options.has_part("calls")) print(call_cost_text(results.call_costs = measure_call_costs(options)));
     if (options.has_part("growth")) print(growth_text(results.growth = measure_growth(options, results.notes)));
     if (options.has_part("degenerate")) print(degenerate_text(results.degenerate = measure_degenerate(options)));
+    if (options.has_part("structures")) results.structures = measure_structures(options, results.notes, print);
     print_notes(results, printed);
-    results.bars = judge_bars(results);
     results.seconds = seconds_since(start);
-    print(bars_text(results.bars));
+    if (!beside_embree) return results;
+    results.bars = judge_bars(results);
+    print(bars_text(results.bars, "median over scenes and views, one thread, ratio to Embree's default, ACCURATE unless said"));
     return results;
 }
 

@@ -5,6 +5,7 @@
 
 import json
 import pathlib
+import statistics
 import sys
 
 KINDS = ["primary", "bounce", "shadow", "random"]
@@ -69,7 +70,7 @@ def work_table(results):
 
 def bar_table(results):
     header = ["what", "bar", "stretch", "measured", ""]
-    return table(header, [[bar["what"], bar["bar"], bar["stretch"] or "–", bar["measured"] or "–", bar["verdict"]]
+    return table(header, [[bar["what"], bar["bar"] or "–", bar["stretch"] or "–", bar["measured"] or "–", bar["verdict"]]
                           for bar in results["bars"]])
 
 
@@ -79,6 +80,19 @@ def growth_table(results):
                            *(figure(row["ns_per_ray"].get(kind), 0) for kind in KINDS)] for row in results["growth"]])
 
 
+def structure_ratio(structures, scene, contender):
+    """The median over the scene's rays."""
+    ratios = [row["ratio"] for row in structures["speeds"] if row["scene"] == scene and row["contender"] == contender]
+    return statistics.median(ratios) if ratios else None
+
+
+def structure_table(structures):
+    """Times the scalar BVH's speed."""
+    contenders = list(dict.fromkeys(row["contender"] for row in structures["speeds"] if row["quality"] == "medium"))
+    return table(["scene", *contenders], [[scene["scene"], *(figure(structure_ratio(structures, scene["scene"], contender))
+                                                             for contender in contenders)] for scene in structures["scenes"]])
+
+
 def heading(results):
     machine, versions = results["machine"], results["versions"]
     return (f"{machine['cpu']}, {machine['cores']} cores, {machine['isa']}; gnomon {versions['commit']}, "
@@ -86,9 +100,11 @@ def heading(results):
 
 
 def to_markdown(results):
-    tables = [scene_table(results), work_table(results), bar_table(results)]
+    tables = [scene_table(results), work_table(results), bar_table(results)] if results["bars"] else []
     if results["growth"]:
         tables.append(growth_table(results))
+    if results["structures"]["scenes"]:
+        tables += [structure_table(results["structures"]), bar_table(results["structures"])]
     return "\n\n".join([heading(results), *tables])
 
 

@@ -7,19 +7,21 @@
 namespace harness {
 namespace {
 
-const std::vector<std::string> part_names = {"scenes", "calls", "growth", "degenerate"};
+const std::vector<std::string> part_names = {"scenes", "calls", "growth", "degenerate", "structures"};
 
 void declare(CLI::App& app, BenchOptions& options) {
     app.add_option("SCENE", options.scenes,
                    "a .glb or .gltf file, or gen:NAME[:TRIANGLES]; without any, the shared scenes and generated ones");
     app.add_option("--parts", options.parts,
-                   "scenes: builds and rays; calls: what a call costs; growth: 10^3 to 10^7 triangles; degenerate: hard scenes")
+                   "scenes: builds and rays; calls: what a call costs; growth: 10^3 to 10^7 triangles; degenerate: hard scenes; "
+                   "structures: which one when")
         ->delimiter(',')
         ->check(CLI::IsMember(part_names))
         ->default_val(part_names);
+    app.add_flag("--structures", options.structures_alone, "the part about structures alone: as --parts structures");
     app.add_flag("--quick", options.quick, "fewer scenes, rays and repeats");
     app.add_option("--ray-count", options.ray_count,
-                   "rays of each kind and view (30,000; quick: 15,000); batches have five times as many");
+                   "rays of each kind and view (30,000; quick: 15,000); batches have five times as many, structures half");
     app.add_option("--repeats", options.repeats, "interleaved repeats; medians are shown (5; quick: 3)")
         ->check(CLI::Range(1, 1000));
     app.add_option("--build-repeats", options.build_repeats, "interleaved builds after a warm-up")
@@ -36,6 +38,7 @@ void declare(CLI::App& app, BenchOptions& options) {
 }
 
 void fill_defaults(BenchOptions& options) {
+    if (options.structures_alone) options.parts = {"structures"};
     if (options.ray_count == 0) options.ray_count = options.quick ? 15'000 : 30'000;
     if (options.repeats == 0) options.repeats = options.quick ? 3 : 5;
     if (options.most_triangles == 0) options.most_triangles = options.quick ? 1'000'000 : 10'000'000;

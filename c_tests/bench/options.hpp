@@ -12,6 +12,7 @@ namespace harness {
 struct BenchOptions {
     std::vector<std::string> scenes;  // empty: the default ones
     std::vector<std::string> parts;   // of part_names
+    bool structures_alone = false;    // parts is then {"structures"}
     bool quick = false;
     std::size_t ray_count = 0;
     std::uint32_t repeats = 0;

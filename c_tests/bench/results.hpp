@@ -30,6 +30,11 @@ struct RaySetInfo {
     double nodes_per_ray = 0, triangles_per_ray = 0;  // what gnomon takes for the closest hit, of shadow rays too
 };
 
+/// What a ray's closest hit takes, on average.
+struct RayWork {
+    double nodes = 0, cells = 0, primitives = 0;
+};
+
 /// One contender in one call form over one set of rays.
 struct Timing {
     std::size_t ray_set, build;  // indices into SceneBench
@@ -76,15 +81,54 @@ struct Degenerate {
     std::string failure;  // why there is no figure
 };
 
-enum class BarVerdict { pass, short_of, not_built, not_measured };
+enum class BarVerdict { pass, short_of, shown, not_built, not_measured };
 
-/// One row of performance.md's "Figures to beat".
+/// One row of performance.md's "Figures to beat", or of those that structures are held against.
 struct Bar {
-    std::string what, bar, stretch, measured;
-    std::optional<double> value, worst;  // the median, or what else is held against the bar; the scene farthest off
+    std::string what, bar, stretch, measured;  // bar: "" where nothing is asked
+    std::optional<double> value, worst;        // the median, or what else is held against the bar; the scene farthest off
     std::string worst_where;
     std::size_t sample_count = 0;
     BarVerdict verdict = BarVerdict::not_measured;
+};
+
+/// Every structure on one scene; ratios are the scalar BVH's time over the structure's.
+struct StructureScene {
+    struct Work {
+        std::size_t ray_set, build;  // indices into SceneBench
+        RayWork per_ray;
+    };
+    SceneBench bench;
+    std::vector<Work> work;
+};
+
+/// A grid of one resolution.
+struct GridStep {
+    double asked;                                            // cells a triangle
+    double cells, references, build_seconds, bytes;          // a triangle, but for the seconds
+    std::vector<std::pair<std::string, double>> ns_per_ray;  // by kind, fresh
+};
+
+/// Grids from one cell to far too many, and beside them the scalar BVH.
+struct GridSweep {
+    std::string scene;
+    std::size_t triangle_count = 0;
+    std::vector<GridStep> steps;
+    std::vector<std::pair<std::string, double>> bvh_ns_per_ray;
+};
+
+/// What a structure is for, and where it did best and worst.
+struct StructureSummary {
+    std::string structure, text;
+};
+
+/// Which structure when.
+struct StructureBench {
+    std::vector<StructureScene> scenes;
+    std::vector<GridSweep> grid_sweeps;
+    std::vector<Growth> growth;
+    std::vector<Bar> bars;
+    std::vector<StructureSummary> summaries;
 };
 
 struct BenchResults {
@@ -92,6 +136,7 @@ struct BenchResults {
     std::vector<CallCost> call_costs;
     std::vector<Growth> growth;
     std::vector<Degenerate> degenerate;
+    StructureBench structures;
     std::vector<Bar> bars;
     std::vector<std::string> notes;  // what was left out, and why
     double seconds = 0;

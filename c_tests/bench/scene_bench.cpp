@@ -1,6 +1,7 @@
 #include "bench/scene_bench.hpp"
 
 #include "bench/contenders.hpp"
+#include "bench/ray_work.hpp"
 #include "bench/trace.hpp"
 #include "bench/views.hpp"
 
@@ -12,35 +13,6 @@ namespace {
 constexpr std::size_t batch_factor = 5;
 
 void append(std::vector<Timing>& to, const std::vector<Timing>& from) { to.insert(to.end(), from.begin(), from.end()); }
-
-/// Of the rays that gnomon's single calls traced.
-double hit_share(Backend& backend, const RaySet& set) {
-    std::size_t count = 0;
-    backend.prepare(set.rays);
-    if (set.occlusion) {
-        std::vector<std::uint8_t> occluded(set.rays.size());
-        backend.occluded(CallForm::prefilled, occluded, 1);
-        for (const std::uint8_t hit : occluded) count += hit;
-    } else {
-        std::vector<GnomonHit> hits(set.rays.size());
-        backend.intersect(CallForm::prefilled, hits, 1);
-        for (const GnomonHit& hit : hits) count += hit.geometry_id != GNOMON_INVALID_ID;
-    }
-    return static_cast<double>(count) / static_cast<double>(set.rays.size());
-}
-
-/// The means over the rays of the single calls.
-void count_work(Backend& backend, const RaySet& set, RaySetInfo& info) {
-    std::vector<GnomonRayCounts> counts(set.rays.size());
-    backend.prepare(set.rays);
-    backend.count(counts);
-    for (const GnomonRayCounts& count : counts) {
-        info.nodes_per_ray += count.nodes_visited;
-        info.triangles_per_ray += count.primitives_tested;
-    }
-    info.nodes_per_ray /= static_cast<double>(counts.size());
-    info.triangles_per_ray /= static_cast<double>(counts.size());
-}
 
 }  // namespace
 
@@ -69,8 +41,8 @@ SceneBench bench_scene(const Scene& scene, const BenchOptions& options, std::vec
         }
         progress.set_label(scene.name + ": traces " + view + " " + set.kind + " rays");
         const std::size_t ray_set = bench.ray_sets.size();
-        bench.ray_sets.push_back({view, set.kind, set.rays.size(), batch.rays.size(), hit_share(backend, set)});
-        count_work(backend, set, bench.ray_sets.back());
+        bench.ray_sets.push_back(ray_set_info(view, set, backend));
+        bench.ray_sets.back().batch_ray_count = batch.rays.size();
         append(bench.timings, trace_interleaved(contenders, single_runs(contenders), set, ray_set, options.repeats, progress));
         append(bench.timings, trace_interleaved(contenders, batch_runs(contenders, batch, options.threads), batch, ray_set,
                                                 options.repeats, progress));

@@ -30,6 +30,19 @@ bool is_quick(const std::string& path) {
     return std::find(quick_names.begin(), quick_names.end(), name) != quick_names.end();
 }
 
+/// A shared scene, or what is generated in its place.
+struct Substituted {
+    std::string path, generated;
+};
+const std::array structure_scenes = {
+    Substituted{"", "gen:soup:100000"},
+    Substituted{GNOMON_SHARED_SCENES "/teapot_in_stadium.glb", "gen:teapot_in_stadium:100000"},
+    Substituted{"", "gen:interior:100000"},
+    Substituted{GNOMON_SHARED_SCENES "/stanford_bunny.glb", "gen:icosphere:80000"},
+    Substituted{"", "gen:hair:99000"},
+    Substituted{GNOMON_SHARED_SCENES "/kicad_dsub62.glb", "gen:needles:60000"},
+};
+
 }  // namespace
 
 std::vector<SceneChoice> choose_scenes(const BenchOptions& options, std::vector<std::string>& notes) {
@@ -47,6 +60,16 @@ std::vector<SceneChoice> choose_scenes(const BenchOptions& options, std::vector<
         for (const char* spec : quick_generated) choices.push_back({spec, 0});
     } else {
         for (const char* spec : generated) choices.push_back({spec, 0});
+    }
+    return choices;
+}
+
+std::vector<SceneChoice> choose_structure_scenes(const BenchOptions& options) {
+    std::vector<SceneChoice> choices;
+    for (const std::string& spec : options.scenes) choices.push_back({spec, 0});
+    if (!choices.empty()) return choices;
+    for (const auto& [path, generated] : structure_scenes) {
+        choices.push_back({std::filesystem::is_regular_file(path) ? path : generated, 0});
     }
     return choices;
 }

@@ -17,4 +17,8 @@ struct SceneChoice {
 /// the shared ones are missing.
 std::vector<SceneChoice> choose_scenes(const BenchOptions& options, std::vector<std::string>& notes);
 
+/// Those of the command line; else one each of what suits some structures and not others: an evenly spread soup, a teapot in a
+/// stadium, rooms, a scan, hair, and slivers. Generated where the shared ones are missing.
+std::vector<SceneChoice> choose_structure_scenes(const BenchOptions& options);
+
 }  // namespace harness

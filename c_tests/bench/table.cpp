@@ -1,9 +1,7 @@
 #include "bench/table.hpp"
 
-#include <algorithm>
-
-#include "bench/bars.hpp"
-#include "bench/trace.hpp"
+#include "bench/bar.hpp"
+#include "bench/timing_table.hpp"
 #include "compare/text_table.hpp"
 
 namespace harness {
@@ -29,59 +27,10 @@ std::string build_table(const SceneBench& scene) {
            table.text();
 }
 
-/// A contender in a call form: a row over all ray sets.
-struct Line {
-    std::size_t build;
-    CallForm call;
-    std::uint32_t threads;
-    bool operator==(const Line&) const = default;
-};
-
-std::vector<Line> lines_of(const SceneBench& scene) {
-    std::vector<Line> lines;
-    for (const Timing& timing : scene.timings) {
-        const Line line{timing.build, timing.call, timing.threads};
-        if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
-    }
-    return lines;
-}
-
-Row header_of(const SceneBench& scene, Row row) {
-    for (const RaySetInfo& set : scene.ray_sets) row.push_back((set.view.empty() ? "" : set.view + " ") + set.kind);
-    return row;
-}
-
-const Timing* find_timing(const SceneBench& scene, const Line& line, std::size_t ray_set) {
-    for (const Timing& timing : scene.timings) {
-        if (Line{timing.build, timing.call, timing.threads} == line && timing.ray_set == ray_set) return &timing;
-    }
-    return nullptr;
-}
-
-/// One row a contender and call form; `cell` makes the text of a timing.
-template <class Cell>
-void add_lines(TextTable& table, const SceneBench& scene, Cell cell) {
-    for (const Line& line : lines_of(scene)) {
-        Row row = {scene.builds[line.build].contender, form_name(line.call) + (line.threads > 1 ? ", threads" : "")};
-        bool any = false;
-        for (std::size_t set = 0; set < scene.ray_sets.size(); ++set) {
-            const Timing* timing = find_timing(scene, line, set);
-            row.push_back(timing ? cell(*timing) : "-");
-            any |= row.back() != "-";
-        }
-        if (any) table.add(std::move(row));
-    }
-}
-
-std::string ratio_table(const SceneBench& scene) {
-    TextTable table(2, header_of(scene, {"x Embree", "call"}));
-    add_lines(table, scene, [](const Timing& timing) { return timing.ratio ? figure(*timing.ratio, "%.2f") : "-"; });
-    return table.text();
-}
+std::string ratio_table(const SceneBench& scene) { return timing_table(scene, "x Embree", ratio_cell).text(); }
 
 std::string ns_table(const SceneBench& scene) {
-    TextTable table(2, header_of(scene, {"ns a ray", "call"}));
-    add_lines(table, scene, [](const Timing& timing) { return figure(timing.ns_per_ray, "%.0f"); });
+    TextTable table = timing_table(scene, "ns a ray", ns_cell);
     Row hits = {"rays that hit", ""}, nodes = {"gnomon's nodes a ray", "closest"}, triangles = {"triangles a ray", "closest"};
     for (const RaySetInfo& set : scene.ray_sets) {
         hits.push_back(figure(100 * set.hit_share, "%.0f %%"));
@@ -156,13 +105,13 @@ std::string degenerate_text(const std::vector<Degenerate>& rows) {
     return "degenerate scenes (each ray's least time of three)\n" + table.text();
 }
 
-std::string bars_text(const std::vector<Bar>& bars) {
+std::string bars_text(const std::vector<Bar>& bars, const std::string& heading) {
     TextTable table(6, {"what", "bar", "stretch", "", "measured", "of"});
     for (const Bar& bar : bars) {
-        table.add({bar.what, bar.bar, bar.stretch.empty() ? "-" : bar.stretch, verdict_name(bar.verdict),
+        table.add({bar.what, bar.bar.empty() ? "-" : bar.bar, bar.stretch.empty() ? "-" : bar.stretch, verdict_name(bar.verdict),
                    bar.measured.empty() ? "-" : bar.measured, std::to_string(bar.sample_count)});
     }
-    return "bars (median over scenes and views, one thread, ratio to Embree's default, ACCURATE unless said)\n" + table.text();
+    return "bars (" + heading + ")\n" + table.text();
 }
 
 }  // namespace harness

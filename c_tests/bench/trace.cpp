@@ -45,7 +45,10 @@ public:
     void add(const std::string& name, CallForm call, std::uint32_t threads = 1, const std::string& reference = "",
              CallForm reference_call = CallForm::fresh) {
         const auto contender = find_contender(contenders_, name);
-        if (contender) runs_.push_back({*contender, call, threads, find(reference, reference_call)});
+        if (contender) {
+            const bool judges = runs_.empty() && name == "embree";
+            runs_.push_back({*contender, call, threads, find(reference, reference_call), judges});
+        }
     }
     std::vector<Run> take() { return std::move(runs_); }
 
@@ -115,7 +118,7 @@ std::vector<Timing> trace_interleaved(std::vector<Contender>& contenders, const 
     Answers answers(set);
     std::vector<std::vector<double>> seconds(runs.size());
     std::vector<std::optional<std::size_t>> differing(runs.size());
-    Decisions embree_decisions;
+    Decisions judge_decisions;
     for (std::size_t pass = 0; pass < pass_count(repeats); ++pass) {
         const bool warm_up = pass == 0;
         for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -123,10 +126,10 @@ std::vector<Timing> trace_interleaved(std::vector<Contender>& contenders, const 
             const double taken = answers.trace(*contender.backend, runs[i]);
             if (!warm_up) {
                 seconds[i].push_back(taken);
-            } else if (i == 0 && contender.plan.name == "embree") {
-                embree_decisions = answers.decisions();
-            } else if (!embree_decisions.empty()) {
-                differing[i] = count_differing(answers.decisions(), embree_decisions);
+            } else if (runs[i].judges) {
+                judge_decisions = answers.decisions();
+            } else if (!judge_decisions.empty()) {
+                differing[i] = count_differing(answers.decisions(), judge_decisions);
             }
         }
         progress.advance();

@@ -17,12 +17,13 @@ struct Run {
     CallForm call;
     std::uint32_t threads;                 // of a batch
     std::optional<std::size_t> reference;  // the run that it is set against
+    bool judges = false;                   // the answers of the runs after it are compared with its own
 };
 
 /// "fresh", "prefilled", "batch".
 std::string form_name(CallForm form);
 
-// In each of these lists Embree is the first where it is there: the answers are compared with its own.
+// In each of these lists Embree is the first where it is there, and judges.
 
 /// Fresh calls of every contender.
 std::vector<Run> fresh_runs(const std::vector<Contender>& contenders);
