@@ -91,16 +91,18 @@
 // and smallest here. At most 2^28 triangles.
 #define GNOMON_STRUCTURE_WIDE_BVH 7u
 
-// Fastest build. BVH: split at the median of the longest axis. WIDE_BVH: 8 bins and larger leaves.
-// GRID: 2 cells a triangle. OCTREE: leaves of 16 triangles, where there are as many.
+// Fastest build. GRID: 2 cells a triangle. OCTREE: leaves of 16 triangles, where there are as many. KD_TREE: split at the
+// median, the axes in turn. BSP_TREE: the fixed directions alone. BVH: split at the median of the longest axis. WIDE_BVH:
+// split in Morton order (Lauterbach et al. 2009).
 #define GNOMON_QUALITY_LOW 0u
 
-// Good for both. BVH and WIDE_BVH: binned surface area heuristic (Wald 2007). GRID: 6 cells a
-// triangle. OCTREE: leaves of 8.
+// Good for both. GRID: 6 cells a triangle. OCTREE: leaves of 8. KD_TREE: surface area heuristic over clipped triangles
+// (Wald and Havran 2006). BSP_TREE: the same over all its planes (Ize, Wald, Parker 2008). BVH and WIDE_BVH: binned surface
+// area heuristic (Wald 2007).
 #define GNOMON_QUALITY_MEDIUM 1u
 
-// Best queries. BVH and WIDE_BVH: as MEDIUM, then improved by reinsertion (Meister and Bittner 2018). GRID: 12
-// cells a triangle. OCTREE: leaves of 6.
+// Best queries. GRID: 12 cells a triangle. OCTREE: leaves of 6. KD_TREE and BSP_TREE: as MEDIUM. BVH and WIDE_BVH: as
+// MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
 #define GNOMON_QUALITY_HIGH 2u
 
 // Decided in float, watertight; t, u and v come from what decided. For previews.
@@ -239,8 +241,8 @@ typedef struct GnomonSceneStats {
     uint64_t node_count;
     // Nodes without children; the cells of a grid.
     uint64_t leaf_count;
-    // Triangles stored in leaves: not those of zero area, which nothing hits, nor copies (equal to the bit) that a BVH cannot
-    // tell apart. Where leaves divide space, a triangle counts in each that it overlaps.
+    // Triangles and spheres stored in leaves: not those of zero area or radius, which nothing hits, nor copies (equal to the
+    // bit) that a BVH cannot tell apart. Where leaves divide space, one counts in each that it overlaps.
     uint64_t reference_count;
     // Triangles and spheres left out by `GNOMON_INVALID_SKIP`.
     uint64_t skipped_count;

@@ -215,8 +215,8 @@ fn hard_arrangements_build_in_time() {
             let bvh = soup.build(quality, Isa::Auto, 2);
             assert_eq!(bvh.leaves.primitive_count(), COUNT as usize, "{name} {quality:?}");
             let seconds = start.elapsed();
-            // Two hundred times what an ordinary scene takes; unoptimised builds and loaded machines are slow.
-            assert!(seconds < Duration::from_secs(20), "{name} {quality:?} took {seconds:?}");
+            // Hundreds of times what an ordinary scene takes; unoptimised builds and loaded machines are slow.
+            assert!(seconds < Duration::from_secs(60), "{name} {quality:?} took {seconds:?}");
         }
     }
 }
