@@ -102,7 +102,8 @@
 #define GNOMON_QUALITY_MEDIUM 1u
 
 // Best queries. GRID: 12 cells a triangle. OCTREE: leaves of 6. KD_TREE and BSP_TREE: as MEDIUM. BVH and WIDE_BVH: as
-// MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
+// MEDIUM, with spatial splits where they pay (Stich, Friedrich, Dietrich 2009), then improved by reinsertion (Meister and
+// Bittner 2018).
 #define GNOMON_QUALITY_HIGH 2u
 
 // Decided in float, watertight; t, u and v come from what decided. For previews.

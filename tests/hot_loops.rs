@@ -22,7 +22,7 @@ struct Expected {
 
 /// A node test takes three of `max` and `min` and six products, fused where there is a fused form but for rays along planes;
 /// a leaf test takes fifteen products more, and one that is fused. Two registers make a vector where one has only four floats.
-const EXPECTED: [Expected; 4] = [
+const OF_TRIANGLES: [Expected; 4] = [
     Expected { token: "Scalar", vector_bytes: 16, instructions: &[("maxps", 6), ("minps", 6), ("mulps", 36)] },
     Expected { token: "Sse42", vector_bytes: 16, instructions: &[("maxps", 6), ("minps", 6), ("mulps", 36)] },
     Expected {
@@ -37,6 +37,23 @@ const EXPECTED: [Expected; 4] = [
     },
 ];
 
+/// As [`OF_TRIANGLES`]: a leaf test of spheres takes fifteen products. Of the scalar one's minima and maxima the compiler makes
+/// comparisons.
+const OF_SPHERES: [Expected; 4] = [
+    Expected { token: "Scalar", vector_bytes: 16, instructions: &[("mulps", 36)] },
+    Expected { token: "Sse42", vector_bytes: 16, instructions: &[("maxps", 6), ("minps", 6), ("mulps", 36)] },
+    Expected {
+        token: "Avx2",
+        vector_bytes: 32,
+        instructions: &[("fm|mulps", 21), ("maxps", 3), ("minps", 3), ("mulps", 15), ("movmskps", 2)],
+    },
+    Expected {
+        token: "Avx512",
+        vector_bytes: 32,
+        instructions: &[("fm|mulps", 21), ("maxps", 3), ("minps", 3), ("mulps", 15), ("cmpps", 2)],
+    },
+];
+
 /// A kernel's frame, in the old and in the new mangling of symbols.
 const FRAME: &str = "9vectorize5frame";
 /// The same for many rays: what is called there once a run or a packet is no matter, and it may call most things.
@@ -44,8 +61,9 @@ const BATCH_FRAME: &str = "15vectorize_batch5frame";
 
 /// What a kernel may call: other frames, what few triangles reach (out of line for that), what rays along planes need
 /// once, and what panics.
-const MAY_BE_CALLED: [&str; 12] = [
+const MAY_BE_CALLED: [&str; 13] = [
     FRAME,
+    ROOTS,
     "6settle",
     "3hit",
     "13has_lower_ids",
@@ -58,6 +76,9 @@ const MAY_BE_CALLED: [&str; 12] = [
     "13unwrap_failed",
     "_Unwind_Resume",
 ];
+
+/// What kernels of spheres call, and no others: symbols do not tell them apart.
+const ROOTS: &str = "12roots_slowly";
 
 /// A frame with fewer instructions holds no traversal.
 const LEAST_TRAVERSAL: usize = 400;
@@ -157,12 +178,15 @@ fn kernels_call_nothing_but_cold_functions() {
 #[test]
 fn kernels_are_made_of_whole_vectors() {
     let kernels = kernels(&release_library());
-    for Expected { token, vector_bytes, instructions } in EXPECTED {
+    let expected = OF_TRIANGLES.map(|expected| (false, expected)).into_iter();
+    for (has_spheres, expected) in expected.chain(OF_SPHERES.map(|expected| (true, expected))) {
+        let Expected { token, vector_bytes, instructions } = expected;
         let of_token: Vec<_> = kernels
             .iter()
             .filter(|kernel| kernel.symbol.contains(token) && kernel.instructions.len() >= LEAST_TRAVERSAL)
+            .filter(|kernel| kernel.called.iter().any(|callee| callee.contains(ROOTS)) == has_spheres)
             .collect();
-        assert!(!of_token.is_empty(), "no traversal's symbol has both {token} and {FRAME}");
+        assert!(!of_token.is_empty(), "no traversal's symbol has both {token} and {FRAME}; of spheres: {has_spheres}");
         for kernel in of_token {
             for (name, least) in instructions {
                 let count = kernel.count(name, vector_bytes);

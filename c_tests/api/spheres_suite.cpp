@@ -27,12 +27,12 @@ GnomonSpheres view(const std::vector<Ball>& balls) {
     return spheres;
 }
 
-void add(const BuilderHandle& builder, const std::vector<Ball>& balls) {
+void add_balls(const BuilderHandle& builder, const std::vector<Ball>& balls) {
     const GnomonSpheres spheres = view(balls);
     REQUIRE_MESSAGE(gnomon_scene_builder_add_spheres(builder.get(), &spheres, nullptr) == GNOMON_OK, last_error());
 }
 
-void add(const BuilderHandle& builder, const TriangleMesh& mesh) {
+void add_mesh(const BuilderHandle& builder, const TriangleMesh& mesh) {
     const GnomonTriangles triangles = mesh.view();
     REQUIRE_MESSAGE(gnomon_scene_builder_add_triangles(builder.get(), &triangles, nullptr) == GNOMON_OK, last_error());
 }
@@ -59,7 +59,7 @@ bool is_hit(const GnomonHit& hit, float t, std::uint32_t geometry_id, std::uint3
 
 TEST_CASE("hit_of_a_sphere_has_t_normal_and_ids_and_zero_u_v") {
     const BuilderHandle builder = new_builder();
-    add(builder, {{0, 0, -9, 1}, {0, 0, 0, 1.5f}});
+    add_balls(builder, {{0, 0, -9, 1}, {0, 0, 0, 1.5f}});
     in_every_configuration(builder, [](const SceneHandle& scene) {
         const GnomonHit hit = intersect(scene, ray_down(0, 0));
         CHECK(is_hit(hit, 0.5f, 0, 1));
@@ -73,7 +73,7 @@ TEST_CASE("hit_of_a_sphere_has_t_normal_and_ids_and_zero_u_v") {
 
 TEST_CASE("ray_from_inside_hits_the_far_side_with_an_outward_normal") {
     const BuilderHandle builder = new_builder();
-    add(builder, {{0, 0, 2, 4}});
+    add_balls(builder, {{0, 0, 2, 4}});
     in_every_configuration(builder, [](const SceneHandle& scene) {
         const GnomonHit hit = intersect(scene, ray_down(0, 0));
         CHECK(is_hit(hit, 4, 0, 0));
@@ -89,9 +89,9 @@ TEST_CASE("of_a_sphere_and_a_triangle_the_nearer_is_hit_and_at_one_t_the_lower_i
         const BuilderHandle builder = new_builder();
         const std::vector<Ball> balls{{0, 0, -1, 1}, {5.25f, 0.25f, 0, 1}};
         const TriangleMesh mesh{{-1, -1, 0, 2, -1, 0, -1, 2, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0}, {0, 1, 2, 3, 4, 5}};
-        if (spheres_first) add(builder, balls);
-        add(builder, mesh);
-        if (!spheres_first) add(builder, balls);
+        if (spheres_first) add_balls(builder, balls);
+        add_mesh(builder, mesh);
+        if (!spheres_first) add_balls(builder, balls);
         const std::uint32_t of_spheres = spheres_first ? 0 : 1, of_triangles = spheres_first ? 1 : 0;
         in_every_configuration(builder, [&](const SceneHandle& scene) {
             CHECK(is_hit(intersect(scene, ray_down(0, 0)), 2, 0, 0));
@@ -109,8 +109,8 @@ TEST_CASE("batches_on_spheres_and_triangles_answer_as_single_calls") {
     std::vector<Ball> balls(400);
     for (Ball& ball : balls)
         ball = {float(rng.uniform(-9, 9)), float(rng.uniform(-9, 9)), float(rng.uniform(-9, 9)), float(rng.uniform(0, 0.6))};
-    add(builder, balls);
-    add(builder, flat_grid(8, -1));
+    add_balls(builder, balls);
+    add_mesh(builder, flat_grid(8, -1));
     std::vector<GnomonRay> rays(1000);
     for (GnomonRay& ray : rays) {
         ray = {{0, 0, 0}, 0, {0, 0, 0}, kInfinity};
@@ -152,8 +152,8 @@ TEST_CASE("strides_separate_and_packed_arrays_give_the_same_spheres") {
 
 TEST_CASE("stats_count_spheres_and_leave_those_of_radius_zero_out_of_leaves") {
     const BuilderHandle builder = new_builder();
-    add(builder, {{0, 0, 0, 1}, {3, 0, 0, 0}, {5, 0, 0, 2}});
-    add(builder, unit_triangle());
+    add_balls(builder, {{0, 0, 0, 1}, {3, 0, 0, 0}, {5, 0, 0, 2}});
+    add_mesh(builder, unit_triangle());
     const SceneHandle scene = build(builder, default_build_options());
     GnomonSceneStats stats;
     REQUIRE(gnomon_scene_stats(scene.get(), sizeof stats, &stats) == GNOMON_OK);
@@ -164,8 +164,8 @@ TEST_CASE("stats_count_spheres_and_leave_those_of_radius_zero_out_of_leaves") {
 TEST_CASE("invalid_spheres_are_named_or_skipped") {
     for (const Ball bad : {Ball{kNan, 0, 0, 1}, Ball{0, kInfinity, 0, 1}, Ball{0, 0, 0, kNan}, Ball{0, 0, 0, -0.5f}}) {
         const BuilderHandle builder = new_builder();
-        add(builder, unit_triangle());
-        add(builder, {{9, 9, 9, 1}, bad});
+        add_mesh(builder, unit_triangle());
+        add_balls(builder, {{9, 9, 9, 1}, bad});
         GnomonBuildOptions options = default_build_options();
         GnomonScene* scene = nullptr;
         CHECK(gnomon_scene_build(builder.get(), &options, &scene) == GNOMON_ERROR_INVALID_ARGUMENT);
@@ -208,6 +208,6 @@ TEST_CASE("bad_arguments_of_add_spheres_are_named_and_leave_the_builder_as_it_wa
 
 TEST_CASE("overlapping_and_identical_spheres_answer_with_the_lowest_id") {
     const BuilderHandle builder = new_builder();
-    add(builder, std::vector<Ball>(100, Ball{0, 0, 0, 1}));
+    add_balls(builder, std::vector<Ball>(100, Ball{0, 0, 0, 1}));
     in_every_configuration(builder, [](const SceneHandle& scene) { CHECK(is_hit(intersect(scene, ray_down(0, 0)), 1, 0, 0)); });
 }

@@ -35,7 +35,8 @@ pub const GNOMON_QUALITY_LOW: u32 = 0;
 /// area heuristic (Wald 2007).
 pub const GNOMON_QUALITY_MEDIUM: u32 = 1;
 /// Best queries. GRID: 12 cells a triangle. OCTREE: leaves of 6. KD_TREE and BSP_TREE: as MEDIUM. BVH and WIDE_BVH: as
-/// MEDIUM, then improved by reinsertion (Meister and Bittner 2018).
+/// MEDIUM, with spatial splits where they pay (Stich, Friedrich, Dietrich 2009), then improved by reinsertion (Meister and
+/// Bittner 2018).
 pub const GNOMON_QUALITY_HIGH: u32 = 2;
 
 /// Decided in float, watertight; t, u and v come from what decided. For previews.

@@ -113,6 +113,7 @@ impl Sphere {
 
     /// In twice the precision, of which the discriminant is off by 64 roundings of `a (w.w + r^2)` at most.
     #[cold]
+    #[inline(never)]
     fn roots_slowly(&self, ray: &SphereRay) -> Roots {
         const U: f64 = DoubleDouble::UNIT_ROUNDOFF;
         let difference =

@@ -81,6 +81,16 @@ impl Cell {
                 let (outward, corner) = (face.doubled_area(), face.vertices()[0]);
                 polygon = polygon.below(|point| outward.dot(point - corner))?;
             }
+            // Faces without area, of flat cells, cut nothing off.
+            for axis in 0..3 {
+                let (least, greatest) = polygon.bounds();
+                if greatest[axis] > upper[axis] {
+                    polygon = polygon.below(|point| point[axis] - upper[axis])?;
+                }
+                if least[axis] < lower[axis] {
+                    polygon = polygon.below(|point| lower[axis] - point[axis])?;
+                }
+            }
             Some(polygon)
         };
         Some([
@@ -114,6 +124,17 @@ mod tests {
             let [below, above, _] = cube.shares(normal, distance);
             assert_near([3.0 * below, 3.0 * above], half_areas);
         }
+    }
+
+    #[test]
+    fn a_flat_cell_is_divided_and_keeps_both_sides() {
+        let flat = Cell::of(&Aabb { lower: Vec3::ZERO, upper: Vec3::new(2.0, 1.0, 0.0) });
+        assert_eq!((flat.half_area(), flat.shares(DVec3::X, 1.0)), (2.0, [0.5, 0.5, 0.0]));
+        let [below, above] = flat.divide(DVec3::X, 1.0);
+        assert_near([below.half_area(), above.half_area()], [1.0, 1.0]);
+        let [tip, _] = below.divide(DVec3::new(1.0, 1.0, 0.0), 1.0);
+        assert_near([tip.half_area(), 0.0], [0.5, 0.0]);
+        assert_near(below.extent(DVec3::Y).into(), [0.0, 1.0]);
     }
 
     #[test]
