@@ -131,6 +131,7 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
 
     /// Whether it has a point in the closed box; may say so of one that passes within the rounding of `f64`.
     fn overlaps(&self, lower: DVec3, upper: DVec3) -> bool;
+
     /// Whether it is a triangle.
     const IS_TRIANGLE: bool;
 

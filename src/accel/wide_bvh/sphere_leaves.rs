@@ -7,7 +7,7 @@ use super::node::Child;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::accel::reference::{PrimitiveSource, Reference};
 use crate::accel::{BuildContext, BuildFailure};
-use crate::geometry::{INVALID_ID, Interval, PrecisionMode, Ray, Sphere, SphereRay};
+use crate::geometry::{Interval, PrecisionMode, Ray, Sphere, SphereRay};
 use crate::math::UNIT_ROUNDOFF;
 use crate::simd::{LANES, Simd};
 
@@ -71,12 +71,7 @@ impl LeafForm for Spheres {
     #[inline(always)]
     fn primitive(words: &[f32], count: usize, lane: usize) -> Sphere {
         let word = |row: usize| words[row * count + lane];
-        Sphere {
-            centre: [word(0), word(1), word(2)],
-            radius: word(3),
-            geometry_id: INVALID_ID - 1,
-            primitive_id: word(4).to_bits(),
-        }
+        Sphere { centre: [word(0), word(1), word(2)], radius: word(3), geometry_id: 0, primitive_id: word(4).to_bits() }
     }
 }
 
