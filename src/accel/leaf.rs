@@ -73,10 +73,10 @@ impl<T: Primitive> ClosestHit<T> {
         (self.primitive.ids().0 != INVALID_ID).then_some(self)
     }
 
-    /// Keeps the hit if it is better, and says so.
+    /// Keeps a hit of the ray if it is better, and says so.
     #[inline(always)]
-    pub(crate) fn improve(&mut self, hit: &TriangleHit, primitive: &T) -> bool {
-        let is_better = hit.t < self.t || (hit.t == self.t && primitive.ids() < self.primitive.ids());
+    pub(crate) fn improve<P: PrecisionMode>(&mut self, ray: &T::Ray, hit: &TriangleHit, primitive: &T) -> bool {
+        let is_better = hit.t < self.t || (hit.t == self.t && primitive.precedes::<P>(&self.primitive, ray));
         if is_better {
             *self = Self { t: hit.t, u: hit.u, v: hit.v, primitive: *primitive };
         }
@@ -94,7 +94,7 @@ pub(crate) fn test_each<'p, Q: Query, P: PrecisionMode, T: Primitive>(
 ) -> bool {
     for primitive in primitives {
         if let Some(hit) = primitive.hit::<P>(ray, Interval { t_min, t_max: best.t })
-            && best.improve(&hit, primitive)
+            && best.improve::<P>(ray, &hit, primitive)
             && Q::FIRST_HIT_ENDS
         {
             return true;

@@ -117,6 +117,12 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
     /// `(geometry_id, primitive_id)`, the order in which equal hits win.
     fn ids(&self) -> (u32, u32);
 
+    /// Whether of the ray's hits on both, at the same `t`, the one on this wins. Any wins over [`Primitive::NONE`].
+    #[inline(always)]
+    fn precedes<P: PrecisionMode>(&self, other: &Self, _ray: &Self::Ray) -> bool {
+        self.ids() < other.ids()
+    }
+
     /// The same one under other ids.
     fn with_ids(self, geometry_id: u32, primitive_id: u32) -> Self;
 

@@ -107,10 +107,16 @@ impl Best {
         self.hit.x
     }
 
-    /// Keeps a hit at `t_max` or before it, if it is better.
+    /// Keeps a hit of the ray at `t_max` or before it, if it is better.
     #[inline(always)]
-    pub(super) fn improve<F: LeafForm>(&mut self, bvh: &WideBvh<F>, hit: TriangleHit, place: Place) {
-        if hit.t < self.hit.x || has_lower_ids(bvh, place, self.place) {
+    pub(super) fn improve<F: LeafForm, P: PrecisionMode>(
+        &mut self,
+        bvh: &WideBvh<F>,
+        ray: &<F::Primitive as Primitive>::Ray,
+        hit: TriangleHit,
+        place: Place,
+    ) {
+        if hit.t < self.hit.x || precedes::<F, P>(bvh, ray, place, self.place) {
             *self = Self { hit: Vec4::new(hit.t, hit.u, hit.v, 0.0), place };
         }
     }
@@ -189,7 +195,7 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
                 if Q::FIRST_HIT_ENDS {
                     return true;
                 }
-                best.improve(self.bvh, hit, Place::new(child, lane));
+                best.improve::<F, P>(self.bvh, &self.ray, hit, Place::new(child, lane));
             }
         }
         false
@@ -266,8 +272,13 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
 
 #[cold]
 #[inline(never)]
-fn has_lower_ids<F: LeafForm>(bvh: &WideBvh<F>, a: Place, b: Place) -> bool {
-    b.leaf == Child::NONE || a.primitive(bvh).ids() < b.primitive(bvh).ids()
+fn precedes<F: LeafForm, P: PrecisionMode>(
+    bvh: &WideBvh<F>,
+    ray: &<F::Primitive as Primitive>::Ray,
+    a: Place,
+    b: Place,
+) -> bool {
+    b.leaf == Child::NONE || a.primitive(bvh).precedes::<P>(&b.primitive(bvh), ray)
 }
 
 #[inline(always)]

@@ -411,7 +411,7 @@ impl Rays {
                     let interval = Interval { t_min: self.t_min[index], t_max: best[index].t };
                     let ray = TriangleRay::new(&(&sources[index]).into());
                     if let Some(hit) = ray.hit::<P>(&triangle, interval) {
-                        best[index].improve(&hit, &triangle);
+                        best[index].improve::<P>(&ray, &hit, &triangle);
                     }
                     (self.nearest[index], self.farthest[index]) = (best[index].t, best[index].t);
                 }

@@ -180,7 +180,7 @@ impl<'a> LeafTest<'a, Spheres> for SphereTest<'a> {
                 if Q::FIRST_HIT_ENDS {
                     return true;
                 }
-                best.improve(self.bvh, hit, place);
+                best.improve::<Spheres, P>(self.bvh, &self.ray, hit, place);
             }
         }
         false

@@ -584,7 +584,7 @@ where
             let triangle = leaf.triangle(lane as usize % LANES);
             let interval = Interval { t_min: ray.t_min, t_max: slot.best.t };
             if let Some(hit) = slot.ray.hit::<P>(&triangle, interval)
-                && slot.best.improve(&hit, &triangle)
+                && slot.best.improve::<P>(&slot.ray, &hit, &triangle)
                 && Q::FIRST_HIT_ENDS
             {
                 return true;
