@@ -3,20 +3,20 @@
 //! `f32` refuses most triangles, by their edge functions and by bounds of `t` that need no division: the least and the
 //! greatest `z / dz` of the vertices. What is left is evaluated at once.
 
-use glam::Vec4;
+use glam::{Vec4, Vec4Swizzles};
 
 use super::WideBvh;
 use super::leaves::{LeafForm, LeafRows, LeafTriangles, TriangleForm};
 use super::node::Child;
 use crate::accel::Primitive;
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{Interval, PrecisionMode, Ray, TriangleHit, TriangleRay};
+use crate::geometry::{Interval, LEAST_EDGE_SLACK, PrecisionMode, Ray, TriangleHit, TriangleRay, edge_slack};
 use crate::math::UNIT_ROUNDOFF;
 use crate::simd::Simd;
 
 /// A ray made ready for what leaves of a form hold.
 pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
-    fn new(bvh: &'a WideBvh<F>, ray: &Ray) -> Self;
+    fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray) -> Self;
 
     /// For directions of unusual length.
     fn check_range(&mut self);
@@ -44,10 +44,12 @@ pub(crate) struct TriangleTest<'a, F> {
     bvh: &'a WideBvh<F>,
     ray: TriangleRay,
     t_min: f32,
+    /// See [`edge_doubt`]; for exact decisions alone.
+    edge_slack: f32,
 }
 
 /// A coordinate of the three vertices of eight triangles.
-type Corners<S> = [<S as Simd>::F32x8; 3];
+pub(super) type Corners<S> = [<S as Simd>::F32x8; 3];
 
 /// The best hit so far.
 #[derive(Clone, Copy)]
@@ -133,8 +135,9 @@ impl Best {
 
 impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     #[inline(always)]
-    fn new(bvh: &'a WideBvh<F>, ray: &Ray) -> Self {
-        Self { bvh, ray: TriangleRay::new(ray), t_min: ray.t_min }
+    fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray) -> Self {
+        let edge_slack = if P::IS_EXACT { edge_slack(reach_from(&bvh.corners, ray)) } else { 0.0 };
+        Self { bvh, ray: TriangleRay::new(ray), t_min: ray.t_min, edge_slack }
     }
 
     /// For directions so short that `1 / dz` overflows: its bounds of `t` then decide nothing, being NaN.
@@ -159,7 +162,7 @@ impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
         t_max: f32,
         best: &mut Best,
     ) -> bool {
-        let candidates = self.candidates(simd, child, t_min, t_max);
+        let candidates = self.candidates::<P, S>(simd, child, t_min, t_max);
         (Q::FIRST_HIT_ENDS && candidates.are_hit()) || self.choose::<Q, P, S>(simd, child, candidates, best)
     }
 
@@ -204,14 +207,14 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
     /// Those that the line of the ray may hit, if any, somewhere between `t_min` and `t_max`.
     ///
     /// A triangle is refused where the signs of its edge functions differ: a difference of rounded products is zero or
-    /// has the right sign. Where they agree and none is zero it is taken for sure.
+    /// has the right sign. Where they agree and none is zero it is taken for sure. For exact decisions both take signs beyond doubt.
     ///
     /// A hit's `t` is an average of the vertices' `z / dz`. Those make three roundings; `t` itself rounds once, and may
     /// leave their range by less than 2^-30 of the largest (`evaluation.rs`). Twice that is allowed for, and underflow.
     ///
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure, nor surely inside.
     #[inline(always)]
-    fn candidates<S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
+    fn candidates<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
         let leaf = self.bvh.leaves.leaf(child.triangles());
         let rows = leaf.unpacked(simd);
         let ray = &self.ray;
@@ -227,11 +230,13 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         let zero = simd.splat(0.0);
         // A NaN may lose a sign here, which refuses less.
         let (least, most) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
-        let mut lanes = leaf.mask() & !(simd.less(least, zero) & simd.less(zero, most));
+        let doubt = if P::IS_EXACT { edge_doubt(simd, &x, &y, self.edge_slack) } else { zero };
+        let below = if P::IS_EXACT { simd.sub(zero, doubt) } else { zero };
+        let mut lanes = leaf.mask() & !(simd.less(least, below) & simd.less(doubt, most));
         if lanes == 0 {
             return Candidates { lanes, sure: 0, inside: 0 };
         }
-        let sure = simd.less(zero, least) | simd.less(most, zero);
+        let sure = simd.less(doubt, least) | simd.less(most, below);
         let per_z = simd.splat(ray.per_z[3]);
         let t = [simd.mul(z[0], per_z), simd.mul(z[1], per_z), simd.mul(z[2], per_z)];
         let (first, last) = (simd.min(t[0], simd.min(t[1], t[2])), simd.max(t[0], simd.max(t[1], t[2])));
@@ -279,6 +284,22 @@ fn precedes<F: LeafForm, P: PrecisionMode>(
     b: Place,
 ) -> bool {
     b.leaf == Child::NONE || a.primitive(bvh).precedes::<P>(&b.primitive(bvh), ray)
+}
+
+/// How far edge functions of sheared coordinates are off at the most: see [`edge_slack`].
+#[inline(always)]
+pub(super) fn edge_doubt<S: Simd>(simd: S, x: &Corners<S>, y: &Corners<S>, slack: f32) -> S::F32x8 {
+    let sum = |&[a, b, c]: &Corners<S>| simd.add(simd.abs(a), simd.add(simd.abs(b), simd.abs(c)));
+    let size = simd.add(sum(x), sum(y));
+    simd.mul_add(size, simd.splat(slack), simd.splat(slack * slack + LEAST_EDGE_SLACK))
+}
+
+/// The largest distance along an axis from the ray's origin to a corner of the scene.
+#[inline(always)]
+fn reach_from([lower, upper]: &[Vec4; 2], ray: &Ray) -> f32 {
+    let origin = ray.origin.extend(0.0);
+    let reach = (*upper - origin).max(origin - *lower);
+    reach.max(reach.yzzz()).max(reach.zzzz()).x
 }
 
 #[inline(always)]
