@@ -59,12 +59,8 @@ impl TriangleRay {
     }
 
     fn order(&self, first: &Triangle, second: &Triangle) -> Ordering {
-        // Neighbours in one plane across an axis, which all their points are in.
-        let lie_in_one_plane = |axis: usize| {
-            let [a, b, c] = first.axes[axis];
-            second.axes[axis] == [a; 3] && b == a && c == a
-        };
-        if (0..3).any(lie_in_one_plane) {
+        // Both sides of a surface, as many scenes have them.
+        if first.has_corners_of(second) {
             return Ordering::Equal;
         }
         let hit = |triangle| match self.verdict::<DoubleDouble>(triangle) {
@@ -75,6 +71,9 @@ impl TriangleRay {
             && (t - other).abs() > 2.0 * (t_error + other_error)
         {
             return t.total_cmp(&other);
+        }
+        if first.lies_in_plane_of(second) {
+            return Ordering::Equal;
         }
         let (first, second) = (Meeting::of(self, first), Meeting::of(self, second));
         let difference = &first.volume * &second.sum() - &second.volume * &first.sum();

@@ -1,10 +1,10 @@
 //! A triangle as every structure stores it.
 
 use glam::{DVec3, Vec3};
-use robust::Coord;
+use robust::{Coord, Coord3D};
 
 use super::Aabb;
-use crate::math::{Expansion, gamma};
+use crate::math::{Expansion, gamma, widen};
 
 /// The vertices, a row for each axis: `axes[1][2]` is the y of the third vertex. A ray's axis permutation then is a
 /// choice of rows.
@@ -69,6 +69,22 @@ impl Triangle {
             });
             robust::orient2d(a, b, c) == 0.0
         })
+    }
+
+    /// Whether each vertex is one of the other's.
+    pub(crate) fn has_corners_of(&self, other: &Self) -> bool {
+        let is_corner = |at: [f32; 3]| (0..3).any(|corner| other.vertex(corner) == at);
+        (0..3).all(|corner| is_corner(self.vertex(corner)))
+    }
+
+    /// Exactly (Shewchuk 1997: orient3d).
+    pub(crate) fn lies_in_plane_of(&self, other: &Self) -> bool {
+        let point = |triangle: &Self, corner: usize| {
+            let [x, y, z] = triangle.vertex(corner).map(widen);
+            Coord3D { x, y, z }
+        };
+        let [a, b, c] = std::array::from_fn(|corner| point(other, corner));
+        (0..3).all(|corner| robust::orient3d(a, b, c, point(self, corner)) == 0.0)
     }
 
     /// Six times the volume between the triangle and the point, `a . (b x c)` of the vertices relative to the point:
