@@ -59,8 +59,8 @@ impl TriangleRay {
     }
 
     fn order(&self, first: &Triangle, second: &Triangle) -> Ordering {
-        // Both sides of a surface, as many scenes have them.
-        if first.has_corners_of(second) {
+        // Both sides of a surface, and decals on planes across an axis: many scenes have those.
+        if first.has_corners_of(second) || first.lies_across_an_axis_with(second) {
             return Ordering::Equal;
         }
         let hit = |triangle| match self.verdict::<DoubleDouble>(triangle) {

@@ -77,6 +77,14 @@ impl Triangle {
         (0..3).all(|corner| is_corner(self.vertex(corner)))
     }
 
+    /// Whether all vertices of both have one coordinate in common.
+    pub(crate) fn lies_across_an_axis_with(&self, other: &Self) -> bool {
+        (0..3).any(|axis| {
+            let at = self.axes[axis][0];
+            self.axes[axis] == [at; 3] && other.axes[axis] == [at; 3]
+        })
+    }
+
     /// Exactly (Shewchuk 1997: orient3d).
     pub(crate) fn lies_in_plane_of(&self, other: &Self) -> bool {
         let point = |triangle: &Self, corner: usize| {
