@@ -106,7 +106,7 @@ impl Evaluation {
         if !simd.beyond3(weights, bound) || 3.0 * bound > RELATIVE_ERROR * sum.abs() {
             return None;
         }
-        if P::IS_EXACT && ((depth < LEAST_NORMAL) | (dz.abs() < LEAST_NORMAL)) {
+        if P::IS_EXACT && lesser(depth, dz.abs()) < LEAST_NORMAL {
             return None;
         }
         let [az, bz, cz] = simd.values3(simd.mul3(weights, az));
@@ -231,6 +231,12 @@ impl<R: Real> Measured<R> {
 
 fn magnitude<R: Real>(values: &[R; 3]) -> f64 {
     values.iter().fold(0.0, |most: f64, v| most.max(v.to_f64().abs()))
+}
+
+/// Without `f64::min`'s care for NaN.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// Without `f64::max`'s care for NaN.

@@ -385,8 +385,11 @@ pub(crate) fn edge_slack(reach: f32) -> f32 {
     9.0 * UNIT_ROUNDOFF * reach + LEAST_DOUBT
 }
 
-/// See [`edge_slack`].
-pub(crate) const LEAST_EDGE_SLACK: f32 = LEAST_DOUBT;
+/// `w^2 + 2^-120` of [`edge_slack`].
+#[inline(always)]
+pub(crate) fn least_doubt(edge_slack: f32) -> f32 {
+    edge_slack * edge_slack + LEAST_DOUBT
+}
 
 /// In twice the precision, and exactly what is still uncertain. `otherwise` is for a triangle that turns out to be
 /// missed: what is known of it then must not depend on the interval, or the order of tests would show in the answer.

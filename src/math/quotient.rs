@@ -30,11 +30,11 @@ pub(crate) fn nearest_quotient(numerator: &Expansion, denominator: &Expansion) -
     }
 }
 
-/// Whether all within `error` of `value` round to the same float, which is neither zero nor infinite. False for NaN.
+/// Whether all within `error` of `value` round to the same float, which is not zero. False for NaN.
 #[inline(always)]
 pub(crate) fn rounds_alike(value: f64, error: f64) -> bool {
     let (low, high) = ((value - error) as f32, (value + error) as f32);
-    (low == high) & (low != 0.0) & (low.abs() <= f32::MAX)
+    (low == high) & (low != 0.0)
 }
 
 /// The order of floats as numbers; both zeros are 0, the infinities the last ones.

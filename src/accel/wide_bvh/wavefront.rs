@@ -13,12 +13,14 @@ use std::time::Instant;
 use glam::Vec3A;
 
 use super::WideBvh;
-use super::leaf_test::{Corners, edge_doubt};
+use super::leaf_test::{Corners, size_across};
 use super::leaves::{Leaf, LeafRows, LeafTriangles};
 use super::node::{Child, WideNode};
 use super::packet::{PACKET, Packet, Spread};
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, settled};
+use crate::geometry::{
+    Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, least_doubt, settled,
+};
 use crate::math::{UNIT_ROUNDOFF, gamma};
 use crate::simd::{LANES, Simd, SimdKernel};
 
@@ -754,20 +756,18 @@ impl Signs {
         simd: S,
         [x, y, _]: &[Corners<S>; 3],
         &[a, b, c]: &Corners<S>,
-        slack: f32,
+        edge_slack: f32,
     ) -> Self {
         let zero = simd.splat(0.0);
         let (least, greatest) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
-        let (below, above) = if P::IS_EXACT {
-            let doubt = edge_doubt(simd, x, y, slack);
-            (simd.sub(zero, doubt), doubt)
-        } else {
-            (zero, zero)
-        };
-        Self {
-            differ: simd.less(least, below) & simd.less(above, greatest),
-            agree: simd.less(above, least) | simd.less(greatest, below),
+        // Above zero where all have one sign, below where two differ.
+        let agreement = simd.max(least, simd.sub(zero, greatest));
+        if !P::IS_EXACT {
+            return Self { differ: simd.less(agreement, zero), agree: simd.less(zero, agreement) };
         }
+        let (slack, least) = (simd.splat(edge_slack), simd.splat(least_doubt(edge_slack)));
+        let doubt = simd.mul_add(size_across(simd, x, y), slack, least);
+        Self { differ: simd.less(simd.add(agreement, doubt), zero), agree: simd.less(doubt, agreement) }
     }
 }
 
