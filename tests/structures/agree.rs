@@ -111,7 +111,7 @@ fn batches_of_every_length_give_the_hits_of_single_calls() {
     const LENGTHS: [usize; 12] = [0, 1, 2, 31, 32, 33, 63, 64, 65, 127, 255, 1000];
 
     for mesh in meshes() {
-        for precision in [Precision::Fast, Precision::Accurate] {
+        for precision in [Precision::Fast, Precision::Accurate, Precision::Exact] {
             for variant in variants() {
                 let scene = build(&mesh, BuildOptions { precision, ..variant });
                 let mut rng = Rng::new(19);
@@ -150,7 +150,7 @@ fn batches_of_every_length_give_the_hits_of_single_calls() {
 fn every_structure_gives_the_hits_of_brute_force() {
     for mesh in meshes() {
         let rays = rays_for(&mesh, &mut Rng::new(7));
-        for precision in [Precision::Fast, Precision::Accurate] {
+        for precision in [Precision::Fast, Precision::Accurate, Precision::Exact] {
             let brute_force = BuildOptions { structure: Structure::BruteForce, precision, ..BuildOptions::default() };
             let reference = build(&mesh, brute_force);
             let expected: Vec<Hit> = rays.iter().map(|ray| reference.intersect(ray)).collect();
