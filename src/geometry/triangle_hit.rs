@@ -328,7 +328,7 @@ impl PrecisionMode for Exact {
     ) -> Option<TriangleHit> {
         match Evaluation::inside::<_, Self>(Scalar, ray, &ray.corners(triangle), interval.t_min) {
             Some(Evaluation::Inside(hit)) => Some(hit),
-            Some(Evaluation::Behind) => None,
+            Some(Evaluation::Outside | Evaluation::Behind) => None,
             Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
             _ => ray.hit_exactly(triangle),
         }
