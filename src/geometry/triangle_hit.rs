@@ -408,7 +408,8 @@ fn evaluate_slowly(
             Some(TriangleHit { t: t as f32, ..hit })
         }
         Evaluation::Behind => None,
-        Evaluation::Outside | Evaluation::Uncertain => Some(otherwise()),
+        Evaluation::Outside => Some(otherwise()),
+        Evaluation::Uncertain => Some(ray.hit_exactly(triangle).unwrap_or_else(otherwise)),
     }
 }
 
