@@ -80,7 +80,10 @@ void add_rounding_bars(std::vector<HardBar>& bars, const HardResults& results) {
     }
     if (!has_precision(results, "fast")) return;
     const Worst median = worst_of(results, "fast", [](const PopulationRow& row) { return row.errors.t_ulps.median; });
-    bars.push_back({"B3", "fast: worst median of t in ulps", figure(median.value, "%.3f") + " (" + median.where + ")", "<= 0.7",
+    const Worst soup = worst_of(
+        results, "fast", [](const PopulationRow& row) { return row.name.starts_with("soup") ? row.errors.t_ulps.median : 0; });
+    bars.push_back({"B3", "fast: median of t in ulps, of soups and the worst",
+                    figure(soup.value, "%.3f") + ", " + figure(median.value, "%.4g") + " (" + median.where + ")", "<= 0.7",
                     median.value <= fast_ulps_median, BarKind::comparison});
     const Worst ratio = worst_of(results, "fast", [&](const PopulationRow& row) {
         const PopulationRow* embree = embree_robust(results, row.name);

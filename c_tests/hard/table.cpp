@@ -51,9 +51,9 @@ std::vector<std::vector<CaseRow>> by_case(const std::vector<CaseRow>& rows) {
     return cases;
 }
 
+/// The limit that goes with most failures.
 std::string limit_of(const std::vector<CaseRow>& rows) {
-    const auto limited = std::ranges::find_if(rows, [](const CaseRow& row) { return !row.limit.empty(); });
-    return limited == rows.end() ? "" : limited->limit;
+    return std::ranges::max(rows, {}, [](const CaseRow& row) { return row.limit.empty() ? 0 : row.failed + 1; }).limit;
 }
 
 }  // namespace
@@ -88,16 +88,17 @@ std::string population_text(const std::vector<PopulationRow>& rows) {
 
 std::string case_text(const std::vector<CaseRow>& rows) {
     constexpr std::array groups = {"gnomon fast", "gnomon accurate", "gnomon exact", "embree", "embree_robust"};
-    TextTable table(2, {"case", "", "checked", "fast", "accurate", "exact", "embree", "robust", "bar", "limit"});
+    TextTable table(3, {"case", "", "bar", "checked", "fast", "accurate", "exact", "embree", "robust"});
+    TextTable limits(2, {"case", "limits of gnomon"});
     for (const std::vector<CaseRow>& case_rows : by_case(rows)) {
         const CaseRow& first = case_rows.front();
-        Row row = {std::to_string(first.number), first.name, grouped(first.checked) + " " + first.unit};
+        Row row = {std::to_string(first.number), first.name, first.bar, grouped(first.checked) + " " + first.unit};
         for (const char* group : groups) row.push_back(failures_of(case_rows, group));
-        row.insert(row.end(), {first.bar, limit_of(case_rows)});
         table.add(std::move(row));
+        if (const std::string limit = limit_of(case_rows); !limit.empty()) limits.add({std::to_string(first.number), limit});
     }
     return "hard cases (failures of each group's worst engine, nothing forgiven; (!): outside gnomon's contract)\n" +
-           table.text();
+           table.text() + "\n" + limits.text();
 }
 
 std::string bars_text(const std::vector<HardBar>& bars) {
