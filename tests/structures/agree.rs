@@ -348,6 +348,32 @@ fn degenerate_scenes_take_bounded_memory_and_give_the_hits_of_brute_force() {
     }
 }
 
+/// Found by gnomon-hard: the ray passes the edge between the two within the band, and an edge function of either overflows.
+#[test]
+fn triangles_whose_edge_functions_overflow_are_decided_alike() {
+    let [a, b, c, d] = [
+        Vec3::new(0.809_017, -0.5, -0.309_017),
+        Vec3::new(0.5, -0.309_017, -0.809_017),
+        Vec3::new(0.850_650_8, 0.0, -0.525_731_1),
+        Vec3::X,
+    ];
+    let origin = Vec3::new(1.234_939_9, -1.465_358_4, -0.572_405_64);
+    let direction = Vec3::new(-0.402_562_02, 1.245_910_9, 0.141_789_29);
+    for exponent in [0, 39, 60, 64, 80, 100, 120] {
+        let scale = 2f32.powi(exponent);
+        let mesh = Mesh::from_soup("two triangles", [a, b, c, a, c, d].map(|corner| corner * scale).to_vec());
+        let ray = Ray { origin: origin * scale, t_min: 0.0, direction, t_max: f32::INFINITY };
+        for precision in [Precision::Accurate, Precision::Exact] {
+            let brute_force = BuildOptions { structure: Structure::BruteForce, precision, ..BuildOptions::default() };
+            let expected = build(&mesh, brute_force).intersect(&ray);
+            for options in variants() {
+                let hit = build(&mesh, BuildOptions { precision, ..options }).intersect(&ray);
+                assert_eq!(bits(&hit), bits(&expected), "2^{exponent}, {options:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn collinear_triangles_are_never_hit() {
     let mut rng = Rng::new(17);
