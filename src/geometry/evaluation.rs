@@ -136,9 +136,9 @@ impl Evaluation {
     /// By the roundings of [`Measured`].
     pub(super) fn of<R: Real>(ray: &TriangleRay, triangle: &Triangle) -> Self {
         let measured = Measured::<R>::of(ray, triangle);
-        let signs = measured.certain_signs();
-        let any_negative = signs.contains(&Ordering::Less);
-        if any_negative && signs.contains(&Ordering::Greater) {
+        let signs = measured.signs(0.0);
+        let any_negative = signs.contains(&Some(Ordering::Less));
+        if any_negative && signs.contains(&Some(Ordering::Greater)) {
             return Self::Outside;
         }
 
@@ -213,11 +213,16 @@ impl<R: Real> Measured<R> {
         Self { weights: edge_functions(&x, &y), bounds, depths: az, direction: dz }
     }
 
-    /// `Equal` where rounding leaves it open.
-    pub(super) fn certain_signs(&self) -> [Ordering; 3] {
+    /// Of the exact weights, which are multiples of `grain`; `None` where rounding leaves it open.
+    pub(super) fn signs(&self, grain: f64) -> [Option<Ordering>; 3] {
         std::array::from_fn(|corner| {
-            let weight = self.weights[corner].to_f64();
-            if weight.abs() > self.bounds[corner] { weight.total_cmp(&0.0) } else { Ordering::Equal }
+            let (weight, bound) = (self.weights[corner].to_f64(), self.bounds[corner]);
+            if weight.abs() > bound {
+                Some(weight.total_cmp(&0.0))
+            } else {
+                // Half of it, for the rounding of the sum.
+                (weight.abs() + bound < 0.5 * grain).then_some(Ordering::Equal)
+            }
         })
     }
 
