@@ -54,7 +54,7 @@ report: packages-report build ## Speed against error of every structure and prec
 	@mkdir -p $(OUT)
 	@status=0; \
 	$(BUILD)/bin/gnomon-compare --json $(OUT)/compare.json --precisions all \
-	    --structures brute_force,grid,octree,kd_tree,bsp_tree,bvh,wide_bvh --most-triangles brute_force:10000,bsp_tree:150000 \
+	    --structures brute_force,grid,octree,kd_tree,bsp_tree,bvh,wide_bvh --most-triangles brute_force:2500,bsp_tree:150000 \
 	    --ray-count 20000 --oracle-rays 4000 --repeats 3 --build-repeats 1 $(ARGS) $(SCENE) || status=$$?; \
 	[ $$status -gt 1 ] || $(BUILD)/bin/gnomon-hard --json $(OUT)/hard.json || status=$$?; \
 	[ $$status -gt 1 ] || $(python) c_tests/report/report.py --compare $(OUT)/compare.json --hard $(OUT)/hard.json \

@@ -112,7 +112,7 @@ void declare(CLI::App& app, Options& options, Lists& lists) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     app.add_option("--most-triangles", lists.most_triangles,
-                   "structures that are left out of larger scenes, such as brute_force:10000,bsp_tree:150000");
+                   "structures that are left out of larger scenes, such as brute_force:2500,bsp_tree:150000");
     app.add_option("--isa", lists.isa, "gnomon's cap: one of " + joined(isa_names))->capture_default_str();
     app.add_flag("--compact", options.compact, "gnomon's wide BVHs with leaves of unique vertices: less memory, less speed");
     app.add_option("--json", options.json_path, "writes machine-readable results");
