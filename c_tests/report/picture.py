@@ -22,6 +22,8 @@ SHAPES = {"fast": "^", "accurate": "o", "exact": "D"}
 PEER_SHAPES = {"embree": "x", "embree_robust": "+"}
 # A decade lies between a panel's least count and its row of zeros.
 ZERO_ROW = 0.1
+# Between the slowest or fastest dot and the end of the scale.
+SIDE_MARGIN = 1.3
 
 STYLE = {"svg.fonttype": "none", "svg.hashsalt": "gnomon", "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 10,
          "text.color": TEXT, "axes.labelcolor": TEXT, "axes.edgecolor": QUIET, "xtick.color": QUIET, "ytick.color": QUIET,
@@ -57,28 +59,38 @@ class Panels:
         self.titles[gid] = text
         axes.plot(row["mrays_per_s"], y, linestyle="none", gid=gid, **marker(row))
 
-    def scales(self, axes, title, label):
-        axes.set(xscale="log", yscale="log")
+    def scales(self, axes, title, label, y_range):
+        speeds = [line.get_xdata()[0] for line in axes.lines if line.get_gid()]
+        axes.set(xscale="log", yscale="log", xlim=(min(speeds) / SIDE_MARGIN, max(speeds) * SIDE_MARGIN), ylim=y_range)
+        for axis in (axes.xaxis, axes.yaxis):
+            name_ticks(axis)
         axes.set_title(title, loc="left", fontsize=11, color=TEXT)
+        axes.set_xlabel("Mray/s (right is faster)")
         axes.set_ylabel(label)
         axes.grid(True, which="major", linewidth=0.8)
         axes.set_axisbelow(True)
-        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axes.xaxis.set_minor_locator(NullLocator())
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}"))
-        axes.set_xlabel("Mray/s (right is faster)")
+
+
+def name_ticks(axis):
+    """At 1, 2, 5, 10, ...; over more than two decades at powers of ten."""
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 100 * low else (1,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}"))
+    axis.set_minor_locator(NullLocator())
+
+
+def marked_level(axes, level, text):
+    axes.axhline(level, color=QUIET, linewidth=0.8, linestyle="--", zorder=0)
+    axes.annotate(text, (0.02, level), xycoords=("axes fraction", "data"), xytext=(0, -17), textcoords="offset points", fontsize=9,
+                  color=QUIET)
 
 
 def draw_distance(panels, axes, rows):
     shown = [row for row in rows if row["t_ulp_p99"] is not None]
     for row in shown:
         panels.dot(axes, row, row["t_ulp_p99"], words(row, row["t_ulp_p99"]))
-    panels.scales(axes, "Distance t: 99 % within", "ulp (down is better)")
-    axes.set_ylim(0.2, 3 * max(row["t_ulp_p99"] for row in shown))
-    axes.axhline(0.5, color=QUIET, linewidth=0.8, linestyle="--", zorder=0)
-    axes.annotate("0.5 ulp: rounding alone", (0.02, 0.5), xycoords=("axes fraction", "data"), xytext=(0, -17),
-                  textcoords="offset points", fontsize=9, color=QUIET)
+    panels.scales(axes, "Distance t: 99 % within", "ulp (down is better)", (0.2, 3 * max(row["t_ulp_p99"] for row in shown)))
+    marked_level(axes, 0.5, "0.5 ulp: rounding alone")
 
 
 def draw_decisions(panels, axes, rows, title):
@@ -87,13 +99,9 @@ def draw_decisions(panels, axes, rows, title):
     zero = ZERO_ROW * 1e6 / rays
     for row in rows:
         panels.dot(axes, row, max(per_million(row), zero), words(row, None))
-    panels.scales(axes, title, "per million rays (down is better)")
-    axes.set_ylim(zero / 6, max(3 * max(map(per_million, rows)), 1e3 * zero))
-    axes.axhline(zero, color=QUIET, linewidth=0.8, linestyle="--", zorder=0)
-    axes.annotate(f"0 of {rays:,}", (0.02, zero), xycoords=("axes fraction", "data"), xytext=(0, -17), textcoords="offset points",
-                  fontsize=9, color=QUIET)
+    panels.scales(axes, title, "per million rays (down is better)", (zero / 6, max(3 * max(map(per_million, rows)), 1e3 * zero)))
+    marked_level(axes, zero, f"0 of {rays:,}")
     axes.yaxis.set_major_locator(FixedLocator([10.0 ** power for power in range(-3, 7) if 10.0 ** power > 2 * zero]))
-    axes.yaxis.set_minor_locator(NullLocator())
 
 
 def legend(figure, rows):
@@ -119,7 +127,10 @@ def polished(svg, titles, description):
         root.remove(metadata)
     for node in root.iter():
         for name in {"d", "x", "y", "transform"} & node.attrib.keys():
-            node.set(name, re.sub(r"(\.\d\d)\d+", r"\1", node.get(name)))  # hundredths of a point
+            node.set(name, re.sub(r"(\.\d\d)\d+", r"\1", " ".join(node.get(name).split())))  # hundredths of a point
+        if node.tag != f"{{{SVG}}}text":
+            node.text = (node.text or "").strip()
+        node.tail = "\n"
     for group in root.iter(f"{{{SVG}}}g"):
         if group.get("id") in titles:
             title = xml.Element(f"{{{SVG}}}title")
@@ -136,6 +147,10 @@ def polished(svg, titles, description):
     return xml.tostring(root, encoding="unicode") + "\n"
 
 
+def counted(number, noun):
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def speed_against_error(data):
     """The picture as text. The third panel, of hard rays, is there where they were traced."""
     rows, hard = data["charts"][0]["dots"], data["hard_dots"]
@@ -143,12 +158,12 @@ def speed_against_error(data):
     with matplotlib.rc_context(STYLE):
         panels = Panels(3 if hard else 2)
         draw_distance(panels, panels.axes[0], rows)
-        draw_decisions(panels, panels.axes[1], rows, f"Wrong hits on {scenes} scenes")
+        draw_decisions(panels, panels.axes[1], rows, f"Wrong hits on {counted(scenes, 'scene')}")
         if hard:
             draw_decisions(panels, panels.axes[2], hard, "Wrong hits on hard rays")
         legend(panels.figure, rows)
         panels.figure.tight_layout(rect=(0, 0.13, 1, 1), w_pad=1.5)
         file = io.StringIO()
         panels.figure.savefig(file, format="svg", metadata={"Date": None})
-    description = f"Speed against error of gnomon's structures and precisions and of Embree, over {scenes} scenes"
+    description = f"Speed against error of gnomon's structures and precisions and of Embree, over {counted(scenes, 'scene')}"
     return polished(file.getvalue(), panels.titles, description)
