@@ -55,7 +55,7 @@ report: packages-report build ## Speed against error of every structure and prec
 	@status=0; \
 	$(BUILD)/bin/gnomon-compare --json $(OUT)/compare.json --precisions all \
 	    --structures brute_force,grid,octree,kd_tree,bsp_tree,bvh,wide_bvh --most-triangles brute_force:2500,bsp_tree:150000 \
-	    --ray-count 20000 --oracle-rays 4000 --repeats 3 --build-repeats 1 $(ARGS) $(SCENE) || status=$$?; \
+	    --ray-count 20000 --oracle-rays 4000 --repeats 3 --build-repeats 1 --threads $(JOBS) $(ARGS) $(SCENE) || status=$$?; \
 	[ $$status -gt 1 ] || $(BUILD)/bin/gnomon-hard --json $(OUT)/hard.json || status=$$?; \
 	[ $$status -gt 1 ] || $(python) c_tests/report/report.py --compare $(OUT)/compare.json --hard $(OUT)/hard.json \
 	    --html $(OUT)/index.html --svg $(OUT)/speed-against-error.svg || status=$$?; \

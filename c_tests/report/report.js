@@ -2,7 +2,7 @@
 // ---- speed against error, of all scenes or of one
 
 const { charts, hard_dots: hardDots, common_scenes: commonScenes } = results;
-const structureName = structure => structure.replace("_", " ");
+const structureName = structure => structure.replaceAll("_", " ");
 const dotName = row => engineLabel(row).replace(/^gnomon /, "").replace("embree", "Embree").replace("_", " ");
 const asDots = rows => rows.map(row => ({ ...row, label: dotName(row), x: row.mrays_per_s }));
 
@@ -65,7 +65,7 @@ function foldingTable(groups, firstHeading, further, { figure, format, words, ma
 }
 
 const share = key => row => 1e6 * row[key] / row.rays;
-const variantName = row => `${structureName(row.structure)} ${row.isa}`;
+const variantName = row => row.engine === "gnomon" ? `${structureName(row.structure)} ${row.isa}` : dotName(row);
 const rateWords = row => `${variantName(row)}: ${count(row.missed)} missed, ${count(row.false_hits)} false, ${count(row.wrong_primitive)} wrong of ${count(row.rays)}`;
 const ulpWords = row => `${variantName(row)}: median ${significant(row.t_ulp_median)}, 99 % ${significant(row.t_ulp_p99)}, most ${significant(row.t_ulp_max)}`;
 const uvWords = row => `${variantName(row)}: 99 % ${significant(row.uv_p99)}, most ${significant(row.uv_max)}`;
