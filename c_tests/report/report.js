@@ -20,7 +20,7 @@ function plotsWithHard({ scene, ray_kind, dots }) {
 function chartSection() {
   const { place, show } = chartPlace();
   const figures = element("details", {}, element("summary", { className: "quiet", textContent: "The same in figures" }));
-  const everything = `median of ${commonScenes.length} ${commonScenes.length === 1 ? "scene" : "scenes"}`;
+  const everything = `mean of ${commonScenes.length} ${commonScenes.length === 1 ? "scene" : "scenes"}`;
   const scenes = element("select", { ariaLabel: "scene" }, ...unique(charts.map(chart => chart.scene ?? everything)).map(name => element("option", { textContent: name })));
   let shownKind = null;
   const draw = () => {
