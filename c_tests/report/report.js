@@ -90,16 +90,18 @@ function populationSection() {
 }
 
 const caseFigure = {
-  figure: row => row.failed, mark: exactBad,
-  format: (failed, row) => `${count(failed)} of ${count(row.checked)}`,
+  figure: row => row.checked ? row.failed / row.checked : null, mark: exactBad,
+  format: (_, row) => `${count(row.failed)} of ${count(row.checked)}`,
   words: row => `${variantName(row)}: ${count(row.failed)} of ${count(row.checked)} ${row.unit}`,
 };
 
 function caseSection() {
-  const numbers = unique(results.cases.map(row => row.number)).sort((a, b) => a - b);
-  const groups = numbers.map(number => {
-    const rows = results.cases.filter(row => row.number === number);
-    return [`${number} ${rows[0].name}`, rows, [rows[0].bar, unique(rows.map(row => row.limit).filter(Boolean)).join("; ")]];
+  const caseName = row => `${row.number} ${row.name}`;
+  const inOrder = [...results.cases].sort((a, b) => a.number - b.number);
+  const groups = unique(inOrder.map(caseName)).map(name => {
+    const rows = inOrder.filter(row => caseName(row) === name);
+    const texts = key => unique(rows.map(row => row[key]).filter(Boolean)).join("; ");
+    return [name, rows, [texts("bar"), texts("limit")]];
   });
   return captioned("Hard cases", "Failed of checked. gnomon’s columns show its worst structure; a row opens to each of them. A limit is gnomon’s own.", foldingTable(groups, "case", ["bar", "limit"], caseFigure));
 }
