@@ -7,10 +7,17 @@ export PATH := $(PATH):$(HOME)/.cargo/bin
 BUILD ?= build
 JOBS ?= $(shell nproc)
 
+# Those that README.md shows, as far as the machine has them; the engine is one of those in ../shared/scenes.
+scenes = $(or $(wildcard ../shared/scenes/*.glb),/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb) \
+         gen:terrain gen:interior gen:hair
+
+# Debian's own, for which its packages are.
+python = $(or $(wildcard /usr/bin/python3),python3)
+
 ctest = ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
 .DEFAULT_GOAL := help
-.PHONY: help build compare bench structures test test-slow hard check test-rust test-c test-sanitized format clean packages packages-test cargo
+.PHONY: help build compare bench structures report test test-slow hard check test-rust test-c test-sanitized format clean packages packages-report packages-test cargo
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -20,8 +27,7 @@ build: packages cargo ## Build the library, gnomon-compare and gnomon-bench
 	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-compare gnomon-bench
 
 compare: OUT ?= $(BUILD)/compare
-compare: SCENE ?= /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb \
-                  gen:terrain gen:interior gen:hair $(wildcard ../shared/scenes/*.glb)
+compare: SCENE ?= $(scenes)
 compare: build ## Compare with Embree; SCENE="file.glb gen:NAME ..." OUT=dir ARGS="options of gnomon-compare"
 	@mkdir -p $(OUT)
 	@status=0; \
@@ -40,6 +46,21 @@ structures: build ## Which structure when: each beside the scalar BVH, about 7 m
 	@mkdir -p $(OUT)
 	@$(BUILD)/bin/gnomon-bench --structures --json $(OUT)/bench.json --html $(OUT)/report.html $(ARGS) $(SCENE)
 	@echo "results: $(OUT)/bench.json and $(OUT)/report.html"
+
+report: OUT ?= $(BUILD)/report
+report: SCENE ?= $(scenes)
+report: packages-report build ## Speed against error of every structure and precision, and the hard cases, about 15 minutes; SCENE= and OUT= as above
+	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-hard
+	@mkdir -p $(OUT)
+	@status=0; \
+	$(BUILD)/bin/gnomon-compare --json $(OUT)/compare.json --precisions all \
+	    --structures brute_force,grid,octree,kd_tree,bsp_tree,bvh,wide_bvh --most-triangles brute_force:2500,bsp_tree:150000 \
+	    --ray-count 20000 --oracle-rays 4000 --repeats 3 --build-repeats 1 --threads $(JOBS) $(ARGS) $(SCENE) || status=$$?; \
+	[ $$status -gt 1 ] || $(BUILD)/bin/gnomon-hard --json $(OUT)/hard.json || status=$$?; \
+	[ $$status -gt 1 ] || $(python) c_tests/report/report.py --compare $(OUT)/compare.json --hard $(OUT)/hard.json \
+	    --html $(OUT)/index.html --svg $(OUT)/speed-against-error.svg || status=$$?; \
+	[ $$status -gt 1 ] || echo "results: $(OUT)/index.html and $(OUT)/speed-against-error.svg"; \
+	exit $$status
 
 test: packages-test cargo check test-rust test-sanitized test-c ## Check the style and run all but the slow tests
 
@@ -85,6 +106,9 @@ clean: ## Remove what was built
 
 packages:
 	@sh cmake/debian-packages.sh compare
+
+packages-report:
+	@sh cmake/debian-packages.sh report
 
 packages-test:
 	@sh cmake/debian-packages.sh test

@@ -1,14 +1,19 @@
 #!/bin/sh
-# debian-packages.sh compare|test: installs the Debian packages that `make compare` or `make test` needs and lacks.
+# debian-packages.sh compare|report|test: installs the Debian packages that `make compare` and the like need and lack.
 # Quick when nothing is missing. Without root or a password-less sudo it prints the one line to type, and fails.
 set -eu
 
 required="cmake g++ make pkg-config libtinygltf-dev nlohmann-json3-dev libcli11-dev libstb-dev libgmp-dev doctest-dev libjs-chart.js assimp-testmodels python3"
 optional="libembree-dev"
-if [ "$1" = test ]; then
+case $1 in
+report)
+    required="$required python3-matplotlib"
+    ;;
+test)
     required="$required clang-format"
-    optional="$optional valgrind clang"
-fi
+    optional="$optional valgrind clang python3-matplotlib"
+    ;;
+esac
 
 missing_of() {
     for package in "$@"; do

@@ -2,6 +2,7 @@
 
 #include "compare/describe.hpp"
 #include "harness/parallel_for.hpp"
+#include "oracle/judge.hpp"
 
 namespace harness {
 namespace {
@@ -25,13 +26,20 @@ Answers answers_of(Backend& backend, const std::vector<GnomonRay>& rays, bool oc
     return answers;
 }
 
-std::vector<Verdict> judge_all(const Oracle& oracle, const std::vector<GnomonRay>& rays, const Answers& answers,
-                               Contract contract, Progress& progress) {
-    std::vector<Verdict> verdicts(rays.size());
+/// The verdicts of each engine, an entry a ray. The oracle looks at a ray once, for all engines.
+std::vector<std::vector<Verdict>> judge_all(const Oracle& oracle, const std::vector<GnomonRay>& rays,
+                                            const std::vector<Engine>& engines, const std::vector<Answers>& answers,
+                                            Progress& progress) {
+    std::vector<std::vector<Verdict>> verdicts(engines.size(), std::vector<Verdict>(rays.size()));
     parallel_for(rays.size(), [&](std::size_t i) {
-        verdicts[i] = answers.hits.empty() ? oracle.judge_occluded(rays[i], answers.occluded[i] != 0, contract)
-                                           : oracle.judge(rays[i], answers.hits[i], contract);
-        if (i % rays_per_step == 0) progress.advance();
+        const std::vector<Candidate> found = oracle.candidates(rays[i]);
+        for (std::size_t build = 0; build < engines.size(); ++build) {
+            const Contract contract = contract_of(engines[build].report);
+            const Answers& given = answers[build];
+            verdicts[build][i] = given.hits.empty() ? judge_occluded(rays[i], given.occluded[i] != 0, found, contract)
+                                                    : oracle.judge(rays[i], given.hits[i], found, contract);
+        }
+        if (i % rays_per_step == 0) progress.advance(engines.size());
     });
     return verdicts;
 }
@@ -86,21 +94,23 @@ bool is_fault(const BuildReport& report, const Verdict& verdict) {
 std::vector<Errors> classify(std::vector<Engine>& engines, const RaySet& set, const Oracle& oracle, const std::string& scene_spec,
                              const Options& options, Progress& progress, std::vector<std::string>& faults) {
     const std::vector<GnomonRay> rays = spread_rays(set.rays, options.oracle_ray_count);
+    std::vector<Answers> answers;
+    for (const Engine& engine : engines) answers.push_back(answers_of(*engine.backend, rays, set.occlusion, options));
+    const std::vector<std::vector<Verdict>> verdicts = judge_all(oracle, rays, engines, answers, progress);
     std::vector<Errors> rows;
     for (std::size_t build = 0; build < engines.size(); ++build) {
         const Engine& engine = engines[build];
-        const Answers answers = answers_of(*engine.backend, rays, set.occlusion, options);
-        const std::vector<Verdict> verdicts = judge_all(oracle, rays, answers, contract_of(engine.report), progress);
-        Errors errors = count_errors(engine.report, verdicts);
+        Errors errors = count_errors(engine.report, verdicts[build]);
         errors.build = build;
         errors.ray_kind = set.kind;
         errors.ray_count = rays.size();
         rows.push_back(errors);
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            if (!is_fault(engine.report, verdicts[i])) continue;
+            const Verdict& verdict = verdicts[build][i];
+            if (!is_fault(engine.report, verdict)) continue;
             const std::string answer =
-                set.occlusion ? (answers.occluded[i] ? "occluded" : "not occluded") : hit_text(answers.hits[i]);
-            faults.push_back(fault_text(engine, set, rays[i], answer, verdicts[i], oracle, scene_spec));
+                set.occlusion ? (answers[build].occluded[i] ? "occluded" : "not occluded") : hit_text(answers[build].hits[i]);
+            faults.push_back(fault_text(engine, set, rays[i], answer, verdict, oracle, scene_spec));
         }
     }
     return rows;

@@ -27,6 +27,19 @@ std::unique_ptr<Backend> make_embree_plan(const Scene& scene, const BuildPlan& p
     return make_embree(scene, plan.robust, plan.quality, options.threads);
 }
 
+/// Takes out gnomon's structures that are not wanted for so many triangles.
+void drop_unwanted(std::vector<BuildPlan>& plans, const Scene& scene, const Options& options,
+                   std::vector<std::string>& warnings) {
+    for (const auto& [unwanted, limit] : options.most_triangles) {
+        if (scene.triangle_count() <= limit) continue;
+        const auto dropped = std::erase_if(
+            plans, [&](const BuildPlan& plan) { return plan.make == make_gnomon_plan && plan.structure == unwanted; });
+        if (dropped == 0) continue;
+        warnings.push_back(scene.name + ": without " + name_of(structure_names, unwanted) + ": more than " +
+                           std::to_string(limit) + " triangles");
+    }
+}
+
 auto identity(const BuildReport& report) { return std::tie(report.engine, report.structure, report.quality, report.precision); }
 
 bool holds_same(const std::vector<Engine>& engines, const BuildReport& report) {
@@ -63,9 +76,10 @@ std::string Engine::label() const {
 std::vector<Engine> build_engines(const Scene& scene, const Options& options, Progress& progress,
                                   std::vector<std::string>& warnings) {
     std::vector<BuildPlan> plans = build_plans(options);
+    drop_unwanted(plans, scene, options, warnings);
     std::vector<std::unique_ptr<Backend>> backends(plans.size());
     std::vector<std::vector<double>> seconds(plans.size());
-    for (std::size_t round = 0; round < build_repeats; ++round) {
+    for (std::size_t round = 0; round < options.build_repeats; ++round) {
         for (std::size_t i = 0; i < plans.size(); ++i) {
             const bool failed = round > 0 && !backends[i];
             if (!failed) {

@@ -11,8 +11,6 @@
 
 namespace harness {
 
-constexpr std::size_t build_repeats = 3;
-
 /// One way of building a scene. `make` may throw BuildError.
 struct BuildPlan {
     std::string label;
@@ -31,8 +29,8 @@ struct Engine {
     std::string label() const;
 };
 
-/// Builds each plan build_repeats times, interleaved. A plan that fails is left out with a line in `warnings`;
-/// so is one that turns out the same as an earlier one, as `auto` may.
+/// Builds each plan options.build_repeats times, interleaved. A plan that fails is left out with a line in `warnings`; so is one
+/// whose structure is not wanted for so many triangles, and one that turns out the same as an earlier one, as `auto` may.
 std::vector<Engine> build_engines(const Scene& scene, const Options& options, Progress& progress,
                                   std::vector<std::string>& warnings);
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
@@ -48,6 +49,22 @@ std::vector<std::uint32_t> values_of(const std::string& option, std::span<const 
     return values;
 }
 
+/// "bsp_tree:150000,octree:2000000": a name, and what follows it.
+std::map<std::uint32_t, std::size_t> limits_of(const std::string& option, std::span<const NamedValue> names,
+                                               const std::string& list) {
+    std::map<std::uint32_t, std::size_t> limits;
+    std::istringstream words(list);
+    for (std::string word; std::getline(words, word, ',');) {
+        const std::size_t colon = word.find(':');
+        const std::string count = colon == std::string::npos ? "" : word.substr(colon + 1);
+        std::size_t limit = 0;
+        const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), limit);
+        if (error != std::errc() || *end != '\0') throw CLI::ValidationError(option, "\"" + word + "\" is not STRUCTURE:COUNT");
+        for (const std::uint32_t value : values_of(option, names, word.substr(0, colon))) limits[value] = limit;
+    }
+    return limits;
+}
+
 GnomonRay parse_ray(const std::string& text) {
     std::array<float, 8> words{};
     std::istringstream stream(text);
@@ -65,7 +82,7 @@ GnomonRay parse_ray(const std::string& text) {
 /// The lists as they are typed, before their words become values.
 struct Lists {
     std::string structures = "auto", precisions = "accurate", qualities = "medium";
-    std::string ray_kinds = "all", calls = "single", isa = "auto", replay;
+    std::string ray_kinds = "all", calls = "single", isa = "auto", replay, most_triangles;
 };
 
 void declare(CLI::App& app, Options& options, Lists& lists) {
@@ -91,6 +108,11 @@ void declare(CLI::App& app, Options& options, Lists& lists) {
     app.add_option("--repeats", options.repeats, "interleaved repeats; medians are shown")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    app.add_option("--build-repeats", options.build_repeats, "interleaved builds; medians are shown")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    app.add_option("--most-triangles", lists.most_triangles,
+                   "structures that are left out of larger scenes, such as brute_force:2500,bsp_tree:150000");
     app.add_option("--isa", lists.isa, "gnomon's cap: one of " + joined(isa_names))->capture_default_str();
     app.add_flag("--compact", options.compact, "gnomon's wide BVHs with leaves of unique vertices: less memory, less speed");
     app.add_option("--json", options.json_path, "writes machine-readable results");
@@ -112,6 +134,7 @@ void resolve(Options& options, const Lists& lists) {
     for (const std::uint32_t call : values_of("--calls", call_names, lists.calls))
         options.calls.push_back(CallForm{static_cast<int>(call)});
     options.isa = values_of("--isa", isa_names, lists.isa).front();
+    options.most_triangles = limits_of("--most-triangles", structure_names, lists.most_triangles);
     if (!lists.replay.empty()) options.replay = parse_ray(lists.replay);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct Options {
     std::size_t oracle_ray_count = 2'000;
     std::uint32_t threads = 1;
     std::uint32_t repeats = 5;
+    std::uint32_t build_repeats = 3;
+    std::map<std::uint32_t, std::size_t> most_triangles;  // by GNOMON_STRUCTURE_; without an entry, any number
     std::uint32_t isa = GNOMON_ISA_AUTO;
     bool compact = false;
     std::string json_path, html_path, failures_path;

@@ -31,7 +31,7 @@ bool replay_engine(Engine& engine, const GnomonRay& ray, const Oracle& oracle) {
 
 bool replay_ray(const std::string& scene_spec, const Options& options, Notes& notes) {
     const Scene scene = load_scene(scene_spec);
-    Progress progress(build_plans(options).size() * build_repeats, scene.name);
+    Progress progress(build_plans(options).size() * options.build_repeats, scene.name);
     std::vector<Engine> engines = build_engines(scene, options, progress, notes.warnings);
     if (engines.empty()) throw SceneError(scene_spec + ": no engine could be built");
     const Oracle oracle(scene);

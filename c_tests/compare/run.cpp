@@ -17,7 +17,8 @@ constexpr std::uint64_t bounce_seed = 1, shadow_seed = 2, random_seed = 3;
 std::size_t step_count(const Options& options) {
     const std::size_t engine_count = build_plans(options).size();
     const std::size_t judged_steps = (options.oracle_ray_count + rays_per_step - 1) / rays_per_step;
-    return engine_count * (build_repeats + options.ray_kinds.size() * (options.calls.size() * passes(options) + judged_steps));
+    return engine_count *
+           (options.build_repeats + options.ray_kinds.size() * (options.calls.size() * passes(options) + judged_steps));
 }
 
 /// Whose hits the other rays start from: gnomon's, as precise as there are.

@@ -24,16 +24,10 @@ bool precedes(const Candidate& c, const GnomonHit& answer) {
 
 bool in_interval(const GnomonRay& ray, float t) { return ray.t_min <= t && t <= ray.t_max; }
 
-/// Whether every engine within the contract takes the triangle for hit.
-bool is_certain(const Candidate& c, Contract contract) {
-    return c.exact_hit && std::isfinite(c.t_greatest) && (contract == Contract::exact || !c.in_band);
-}
-
-bool is_possible(const Candidate& c, Contract contract) { return c.exact_hit || contract == Contract::banded; }
-
-/// Whether the float t of a certain hit lies in the interval, whichever way it was rounded.
-bool surely_counts(const GnomonRay& ray, const Candidate& c, Contract contract) {
-    return is_certain(c, contract) && in_interval(ray, c.t_least) && in_interval(ray, c.t_greatest);
+/// Whether the band leaves no doubt that the triangle is hit, nor the rounding of its t that it lies in the interval.
+bool surely_counts(const GnomonRay& ray, const Candidate& c) {
+    const bool is_certain = c.exact_hit && !c.in_band && std::isfinite(c.t_greatest);
+    return is_certain && in_interval(ray, c.t_least) && in_interval(ray, c.t_greatest);
 }
 
 /// Whether a candidate that surely counts comes before the answer: nearer however both were rounded, or at the same t, which
@@ -55,26 +49,30 @@ double uv_error(const PlanePoint& exact, const GnomonHit& answer) {
     return nearest_double(std::max(u_error, v_error)) * 0x1p24;
 }
 
-bool answer_breaks_contract(const GnomonRay& ray, const GnomonHit& answer, const std::vector<Candidate>& candidates,
-                            const Candidate* reported, const Verdict& verdict, Contract contract) {
+/// Contract::banded: any candidate may be taken for hit, those that surely count have to be.
+bool leaves_band(const GnomonRay& ray, const GnomonHit& answer, const std::vector<Candidate>& candidates,
+                 const Candidate* reported, const Verdict& verdict) {
     if (is_hit(answer)) {
-        if (reported == nullptr || !is_possible(*reported, contract) || !in_interval(ray, answer.t)) return true;
+        if (reported == nullptr || !in_interval(ray, answer.t)) return true;
         if (!(reported->t_least <= answer.t && answer.t <= reported->t_greatest)) return true;
         if (verdict.t_ulps > t_ulps_promised || verdict.uv_error > uv_error_promised) return true;
     }
-    return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
-        return surely_counts(ray, c, contract) && (!is_hit(answer) || surely_beats(c, answer));
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [&](const Candidate& c) { return surely_counts(ray, c) && (!is_hit(answer) || surely_beats(c, answer)); });
+}
+
+bool occlusion_leaves_band(const GnomonRay& ray, bool answer, const std::vector<Candidate>& candidates) {
+    if (!answer)
+        return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return surely_counts(ray, c); });
+    return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
+        return ray.t_min <= ray.t_max && ray.t_min <= c.t_greatest && c.t_least <= ray.t_max;
     });
 }
 
-bool occlusion_breaks_contract(const GnomonRay& ray, bool answer, const std::vector<Candidate>& candidates, Contract contract) {
-    if (!answer) {
-        return std::any_of(candidates.begin(), candidates.end(),
-                           [&](const Candidate& c) { return surely_counts(ray, c, contract); });
-    }
-    return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
-        return is_possible(c, contract) && ray.t_min <= ray.t_max && ray.t_min <= c.t_greatest && c.t_least <= ray.t_max;
-    });
+/// Contract::exact: one triangle is right, the first of the candidates that count, and one t.
+bool is_inexact(const GnomonHit& answer, const Candidate* closest, const Verdict& verdict) {
+    if (closest == nullptr) return is_hit(answer);
+    return !same_triangle(answer, *closest) || answer.t != closest->t || verdict.uv_error > uv_error_promised;
 }
 
 }  // namespace
@@ -85,10 +83,11 @@ bool counts(const GnomonRay& ray, const Candidate& candidate) {
 
 Verdict judge_intersect(const GnomonRay& ray, const GnomonHit& answer, const std::vector<Candidate>& candidates,
                         const Candidate* reported, const std::optional<PlanePoint>& exact, Contract contract) {
-    const auto closest = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) { return counts(ray, c); });
+    const auto first = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) { return counts(ray, c); });
+    const Candidate* closest = first == candidates.end() ? nullptr : &*first;
     const bool reported_counts = reported != nullptr && counts(ray, *reported);
     Verdict verdict;
-    verdict.missed = !is_hit(answer) && closest != candidates.end();
+    verdict.missed = !is_hit(answer) && closest != nullptr;
     verdict.false_hit = is_hit(answer) && !reported_counts;
     verdict.wrong_primitive = reported_counts && reported->t > closest->t;
     verdict.tie = reported_counts && reported->t == closest->t && !same_triangle(answer, *closest);
@@ -96,8 +95,8 @@ Verdict judge_intersect(const GnomonRay& ray, const GnomonHit& answer, const std
         verdict.t_ulps = t_error_ulps(*exact, answer.t);
         verdict.uv_error = uv_error(*exact, answer);
     }
-    verdict.outside_contract =
-        contract != Contract::none && answer_breaks_contract(ray, answer, candidates, reported, verdict, contract);
+    if (contract == Contract::banded) verdict.outside_contract = leaves_band(ray, answer, candidates, reported, verdict);
+    if (contract == Contract::exact) verdict.outside_contract = is_inexact(answer, closest, verdict);
     return verdict;
 }
 
@@ -106,7 +105,8 @@ Verdict judge_occluded(const GnomonRay& ray, bool answer, const std::vector<Cand
     Verdict verdict;
     verdict.missed = truth && !answer;
     verdict.false_hit = answer && !truth;
-    verdict.outside_contract = contract != Contract::none && occlusion_breaks_contract(ray, answer, candidates, contract);
+    if (contract == Contract::banded) verdict.outside_contract = occlusion_leaves_band(ray, answer, candidates);
+    if (contract == Contract::exact) verdict.outside_contract = answer != truth;
     return verdict;
 }
 

@@ -10,7 +10,7 @@
 
 namespace harness {
 
-/// How far t may be off at most, in ulps: accuracy.md, ACCURATE and EXACT.
+/// How far t may be off at most, in ulps: accuracy.md, ACCURATE. EXACT rounds it once.
 constexpr double t_ulps_promised = 0.51;
 
 /// The same for u and v, in units of 2^-24.
@@ -19,7 +19,8 @@ constexpr double uv_error_promised = 0.52;
 /// Whether a candidate is a true hit in the closed interval of the ray.
 bool counts(const GnomonRay& ray, const Candidate& candidate);
 
-/// `reported` is the candidate that the answer names, if any, and `exact` its exact point if it is an exact hit.
+/// `candidates` are in the oracle's order; `reported` is the candidate that the answer names, if any, and `exact` its exact point
+/// if it is an exact hit.
 Verdict judge_intersect(const GnomonRay& ray, const GnomonHit& answer, const std::vector<Candidate>& candidates,
                         const Candidate* reported, const std::optional<PlanePoint>& exact, Contract contract);
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "oracle/cull.hpp"
 #include "oracle/exact.hpp"
@@ -42,8 +43,14 @@ void allow_depths(Candidate& candidate, const RayFrame& frame, const Triangle& t
     candidate.t_greatest = std::nextafter(greatest, infinity);
 }
 
+/// A candidate and its t, which a plane parallel to the ray has not.
+struct Found {
+    Candidate candidate;
+    std::optional<mpq_class> t;
+};
+
 /// Nothing for a triangle that neither exact arithmetic nor f32 could take for hit.
-std::optional<Candidate> classify(const RayFrame& frame, const StoredTriangle& stored) {
+std::optional<Found> classify(const RayFrame& frame, const StoredTriangle& stored) {
     const Triangle triangle = frame.rename(stored.vertices);
     const auto edges = estimate_edges(frame, triangle);
     if (!edges) return std::nullopt;
@@ -55,7 +62,8 @@ std::optional<Candidate> classify(const RayFrame& frame, const StoredTriangle& s
 
     const bool in_band = std::any_of(edges->begin(), edges->end(), [](const EdgeEstimate& edge) { return edge.in_band(); });
     Candidate candidate{stored.geometry_id, stored.primitive_id, exact_hit, in_band, infinity, infinity, -infinity, infinity};
-    if (const auto t = pair.plane_t()) {
+    std::optional<mpq_class> t = pair.plane_t();
+    if (t) {
         candidate.t = nearest_float(*t);
         candidate.t_exact = nearest_double(*t);
     }
@@ -64,13 +72,15 @@ std::optional<Candidate> classify(const RayFrame& frame, const StoredTriangle& s
     } else {
         allow_depths(candidate, frame, triangle);
     }
-    return candidate;
+    return Found{candidate, std::move(t)};
 }
 
-void sort_by_t(std::vector<Candidate>& candidates) {
-    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-        return std::tie(a.t, a.geometry_id, a.primitive_id) < std::tie(b.t, b.geometry_id, b.primitive_id);
-    });
+/// By t, the parallel ones last; then by ids.
+bool precedes(const Found& a, const Found& b) {
+    if (a.t.has_value() != b.t.has_value()) return a.t.has_value();
+    if (a.t != b.t) return a.t < b.t;
+    return std::tie(a.candidate.geometry_id, a.candidate.primitive_id) <
+           std::tie(b.candidate.geometry_id, b.candidate.primitive_id);
 }
 
 /// The candidates among the triangles that for_each(visit) visits, none of a ray that is no line.
@@ -78,12 +88,14 @@ template <typename ForEach>
 std::vector<Candidate> collect(const GnomonRay& ray, ForEach&& for_each) {
     const RayFrame frame(ray);
     if (!frame.is_line()) return {};
-    std::vector<Candidate> found;
+    std::vector<Found> found;
     for_each([&](const StoredTriangle& triangle) {
-        if (const auto candidate = classify(frame, triangle)) found.push_back(*candidate);
+        if (auto candidate = classify(frame, triangle)) found.push_back(std::move(*candidate));
     });
-    sort_by_t(found);
-    return found;
+    std::sort(found.begin(), found.end(), precedes);
+    std::vector<Candidate> candidates;
+    for (const Found& one : found) candidates.push_back(one.candidate);
+    return candidates;
 }
 
 }  // namespace

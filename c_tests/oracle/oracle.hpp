@@ -34,7 +34,8 @@ struct Verdict {
     double uv_error = -1;           // max(|u - exact|, |v - exact|) in units of 2^-24; both -1 without a true hit to compare
 };
 
-/// What the contract promises, by precision: `exact` turns the band off.
+/// What the contract promises, by precision. `banded`: decisions in f32, t within 0.51 ulp. `exact`: no band, and the order of
+/// the exact t; t rounded once, which is also what lies in the interval or not; so raw counts of 0.
 enum class Contract { none, banded, exact };
 
 class Oracle {
@@ -46,8 +47,8 @@ public:
     Oracle(const Oracle&) = delete;
     Oracle& operator=(const Oracle&) = delete;
 
-    /// All triangles that the ray hits or could be taken to hit in f32, sorted by (t, geometry_id, primitive_id). Ignores the
-    /// interval.
+    /// All triangles that the ray hits or could be taken to hit in f32, sorted by the rational t, then by (geometry_id,
+    /// primitive_id). Ignores the interval.
     std::vector<Candidate> candidates(const GnomonRay& ray) const;
 
     /// The same, asking every triangle: the check of the culling.
@@ -56,10 +57,8 @@ public:
     /// Exact hits with the rounded t in [t_min, t_max]; the closest first; empty for a miss or an invalid ray.
     std::vector<Candidate> hits(const GnomonRay& ray) const;
 
-    /// Judges a closest-hit answer.
+    /// Judges a closest-hit answer. `found` is what candidates() says of the ray, so that the answers of many engines share it.
     Verdict judge(const GnomonRay& ray, const GnomonHit& answer, Contract contract) const;
-
-    /// The same with the ray's candidates(), which then are found once for many answers.
     Verdict judge(const GnomonRay& ray, const GnomonHit& answer, const std::vector<Candidate>& found, Contract contract) const;
 
     /// Judges an any-hit answer: missed, false_hit and outside_contract are filled.

@@ -9,7 +9,6 @@ import struct
 import sys
 from fractions import Fraction
 
-T_ULPS_PROMISED = Fraction(51, 100)
 UV_ERROR_PROMISED = Fraction(52, 100) / 2**24
 INVALID_ID = 0xFFFFFFFF
 
@@ -64,19 +63,15 @@ def float_spacing(value):
 
 
 class Hit:
-    """The exact point, and the floats that the contract allows for its t."""
+    """The exact point, and its t rounded once."""
 
     def __init__(self, ids, t, u, v):
         self.ids, self.t, self.u, self.v = ids, t, u, v
         self.spacing = float_spacing(t)
         self.t_float = nearest_float(t)
-        floats = [self.t_float, neighbour(self.t_float, 1)]
-        if self.t_float != 0:
-            floats.append(neighbour(self.t_float, -1))
-        self.allowed = [f for f in floats if abs(Fraction(f) - t) <= T_ULPS_PROMISED * self.spacing]
 
     def order(self):
-        return (self.t_float, self.ids)
+        return (self.t, self.ids)
 
 
 def intersect(origin, direction, triangle):
@@ -110,31 +105,23 @@ def all_hits(ray, triangles):
 def judge(interval, answer, hits):
     """What Oracle::judge() says for Contract::exact."""
     t_min, t_max = interval
-
-    def counts(t):
-        return t_min <= t <= t_max
-
     t, u, v = numbers([answer["t"], answer["u"], answer["v"]])
     ids = tuple(answer["ids"])
     is_hit = ids[0] != INVALID_ID
-    counting = [hit for hit in hits if counts(hit.t_float)]
+    counting = [hit for hit in hits if t_min <= hit.t_float <= t_max]
+    closest = counting[0] if counting else None
     reported = next((hit for hit in hits if hit.ids == ids), None)
     verdict = {"missed": not is_hit and bool(counting), "false_hit": is_hit and reported not in counting,
                "wrong_primitive": False, "tie": False, "t_ulps": -1.0, "uv_error": -1.0}
     if reported in counting:
-        closest = counting[0]
         verdict["wrong_primitive"] = reported.t_float > closest.t_float
         verdict["tie"] = reported.t_float == closest.t_float and reported is not closest
     if reported:
         t_error = abs(Fraction(t) - reported.t) / reported.spacing
         uv_error = max(abs(Fraction(u) - reported.u), abs(Fraction(v) - reported.v))
         verdict["t_ulps"], verdict["uv_error"] = float(t_error), float(uv_error) * 2**24
-    verdict["outside_contract"] = is_hit and (
-        reported is None or not counts(t) or t_error > T_ULPS_PROMISED or uv_error > UV_ERROR_PROMISED)
-    for hit in hits:
-        if all(counts(allowed) for allowed in hit.allowed):
-            is_closer = max(hit.allowed) < t or (hit.allowed == [t] and hit.ids < ids)
-            verdict["outside_contract"] |= not is_hit or is_closer
+    is_right = reported is closest and (not is_hit if closest is None else t == closest.t_float and uv_error <= UV_ERROR_PROMISED)
+    verdict["outside_contract"] = not is_right
     return verdict
 
 

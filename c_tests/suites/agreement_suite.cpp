@@ -1,4 +1,5 @@
-// Every structure, quality, thread count and call form gives the hits of the wide BVH, to the bit, on every scene there is.
+// Every structure, quality, thread count and call form gives the hits of the wide BVH, to the bit, on every scene there is,
+// in ACCURATE and in EXACT.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -29,7 +30,15 @@ struct Variant {
     GnomonBuildOptions options;
 };
 
-std::vector<Variant> variants(std::size_t triangle_count) {
+GnomonBuildOptions options_of(std::uint32_t structure, std::uint32_t precision) {
+    GnomonBuildOptions options;
+    gnomon_build_options_init(&options);
+    options.structure = structure;
+    options.precision = precision;
+    return options;
+}
+
+std::vector<Variant> variants(std::size_t triangle_count, std::uint32_t precision) {
     const std::vector<std::pair<std::string, std::uint32_t>> structures{
         {"grid", GNOMON_STRUCTURE_GRID},         {"octree", GNOMON_STRUCTURE_OCTREE}, {"kd_tree", GNOMON_STRUCTURE_KD_TREE},
         {"bsp_tree", GNOMON_STRUCTURE_BSP_TREE}, {"bvh", GNOMON_STRUCTURE_BVH},       {"wide_bvh", GNOMON_STRUCTURE_WIDE_BVH}};
@@ -37,9 +46,7 @@ std::vector<Variant> variants(std::size_t triangle_count) {
     for (const auto& [name, structure] : structures) {
         if (structure == GNOMON_STRUCTURE_BSP_TREE && triangle_count > most_for_bsp_tree) continue;
         for (const std::uint32_t quality : {GNOMON_QUALITY_LOW, GNOMON_QUALITY_MEDIUM, GNOMON_QUALITY_HIGH}) {
-            GnomonBuildOptions options;
-            gnomon_build_options_init(&options);
-            options.structure = structure;
+            GnomonBuildOptions options = options_of(structure, precision);
             options.quality = quality;
             options.thread_count = 1 + quality % 2;
             variants.push_back({name + " " + std::to_string(quality), options});
@@ -59,14 +66,10 @@ void print_difference(const std::string& scene, const std::string& variant, cons
 }
 
 /// Returns how many answers were compared.
-std::size_t check_scene(const std::string& spec, std::size_t ray_count) {
-    CAPTURE(spec);
-    const Scene scene = load_scene(spec);
+std::size_t check_scene_in(const Scene& scene, std::size_t ray_count, std::uint32_t precision) {
+    CAPTURE(precision);
     Rng rng(5);
-    GnomonBuildOptions options;
-    gnomon_build_options_init(&options);
-    options.structure = GNOMON_STRUCTURE_WIDE_BVH;
-    const auto reference = make_gnomon(scene, options);
+    const auto reference = make_gnomon(scene, options_of(GNOMON_STRUCTURE_WIDE_BVH, precision));
     const Tracer trace = [&](const std::vector<GnomonRay>& rays) {
         std::vector<GnomonHit> hits(rays.size());
         reference->prepare(rays);
@@ -85,7 +88,7 @@ std::size_t check_scene(const std::string& spec, std::size_t ray_count) {
     std::size_t compared = 0;
     std::vector<GnomonHit> hits(rays.size());
     std::vector<std::uint8_t> occluded(rays.size());
-    for (const Variant& variant : variants(scene.triangle_count())) {
+    for (const Variant& variant : variants(scene.triangle_count(), precision)) {
         CAPTURE(variant.name);
         const auto backend = make_gnomon(scene, variant.options);
         backend->prepare(rays);
@@ -103,6 +106,15 @@ std::size_t check_scene(const std::string& spec, std::size_t ray_count) {
         CHECK(differences == 0);
         compared += rays.size();
     }
+    return compared;
+}
+
+std::size_t check_scene(const std::string& spec, std::size_t ray_count) {
+    CAPTURE(spec);
+    const Scene scene = load_scene(spec);
+    std::size_t compared = 0;
+    for (const std::uint32_t precision : {GNOMON_PRECISION_ACCURATE, GNOMON_PRECISION_EXACT})
+        compared += check_scene_in(scene, ray_count, precision);
     std::printf("%-24s %9zu triangles %10zu answers\n", scene.name.c_str(), scene.triangle_count(), compared);
     std::fflush(stdout);
     return compared;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "harness/rng.hpp"
 #include "oracle/exact.hpp"
@@ -489,6 +490,71 @@ TEST_SUITE("judge") {
         const Verdict off = judge.judge(ray, hit(0, other, 0.25f, 0.5f), Contract::exact);
         CHECK(off.t_ulps == doctest::Approx(2.0 / 3.0));
         CHECK(off.outside_contract);
+    }
+
+    // At 54 + 50/101 ulps behind 1, and at 53 + 87/101: both round to 54 ulps, and the first is 51/101 from 55.
+    const float far_of_two = 101 + 86 * 0x1p-17f, near_of_two = 101 + 85 * 0x1p-17f;
+    const float rounded_t = 1 + 54 * 0x1p-23f;
+    const Scene two = scene_of({right_triangle(far_of_two), right_triangle(near_of_two)});
+    const Oracle of_two(two);
+    GnomonRay towards_two(float t_min, float t_max) { return ray_of({1, 2, 0}, {0, 0, 101}, t_min, t_max); }
+
+    TEST_CASE("judge_exact_asks_for_the_nearest_float") {
+        const Scene far_alone = scene_of({right_triangle(far_of_two)});
+        const Oracle judge(far_alone);
+        const GnomonRay ray = towards_two(0, 2);
+        for (const Contract contract : {Contract::banded, Contract::exact})
+            CHECK_FALSE(judge.judge(ray, hit(0, rounded_t, 0.25f, 0.5f), contract).outside_contract);
+        const GnomonHit other = hit(0, 1 + 55 * 0x1p-23f, 0.25f, 0.5f);
+        CHECK(judge.judge(ray, other, Contract::exact).t_ulps == doctest::Approx(51.0 / 101));
+        CHECK_FALSE(judge.judge(ray, other, Contract::banded).outside_contract);
+        CHECK(judge.judge(ray, other, Contract::exact).outside_contract);
+    }
+
+    TEST_CASE("judge_exact_orders_hits_of_one_rounded_t") {
+        const GnomonRay ray = towards_two(0, 2);
+        const std::vector<Candidate> hits = of_two.hits(ray);
+        REQUIRE(hits.size() == 2);
+        CHECK(hits[0].t == hits[1].t);
+        CHECK(hits[0].primitive_id == 1);
+        CHECK(is_faultless(of_two.judge(ray, hit(1, rounded_t, 0.25f, 0.5f), Contract::exact)));
+        const GnomonHit farther = hit(0, rounded_t, 0.25f, 0.5f);
+        const Verdict verdict = of_two.judge(ray, farther, Contract::exact);
+        CHECK(verdict.tie);
+        CHECK_FALSE(verdict.wrong_primitive);
+        CHECK(verdict.outside_contract);
+        CHECK_FALSE(of_two.judge(ray, farther, Contract::banded).outside_contract);
+    }
+
+    TEST_CASE("judge_exact_takes_the_lower_id_of_equal_exact_t") {
+        CHECK(is_faultless(oracle.judge(inside, hit(1, 5, 0.25f, 0.5f), Contract::exact)));
+        CHECK(oracle.judge(inside, hit(2, 5, 0.25f, 0.5f), Contract::exact).outside_contract);
+    }
+
+    TEST_CASE("judge_exact_decides_the_interval_on_the_rounded_t") {
+        // The exact t of the first lies behind the end, that of the second before the start.
+        const Scene far_alone = scene_of({right_triangle(far_of_two)});
+        const Scene near_alone = scene_of({right_triangle(near_of_two)});
+        for (const Scene* scene : {&far_alone, &near_alone}) {
+            const Oracle judge(*scene);
+            const GnomonRay ray = towards_two(rounded_t, rounded_t);
+            CHECK(is_faultless(judge.judge(ray, hit(0, rounded_t, 0.25f, 0.5f), Contract::exact)));
+            CHECK(judge.judge(ray, miss(), Contract::exact).outside_contract);
+            CHECK(is_faultless(judge.judge_occluded(ray, true, Contract::exact)));
+            CHECK(judge.judge_occluded(ray, false, Contract::exact).outside_contract);
+            const GnomonRay before = towards_two(0, std::nextafter(rounded_t, 0.0f));
+            CHECK(is_faultless(judge.judge(before, miss(), Contract::exact)));
+            CHECK(judge.judge(before, hit(0, rounded_t, 0.25f, 0.5f), Contract::exact).outside_contract);
+            CHECK(judge.judge_occluded(before, true, Contract::exact).outside_contract);
+        }
+    }
+
+    TEST_CASE("judge_exact_counts_every_raw_fault") {
+        for (const auto& [ray, answer] :
+             {std::pair(inside, miss()), std::pair(outside, hit(1, 5, 0.75f, 0.75f)), std::pair(inside, hit(0, 7, 0.25f, 0.5f))})
+            CHECK(oracle.judge(ray, answer, Contract::exact).outside_contract);
+        CHECK(oracle.judge(inside, hit(1, 5, 0.25f, 0.5f + 0x1p-24f), Contract::exact).outside_contract);
+        CHECK(oracle.judge(inside, hit(1, nan_value, 0.25f, 0.5f), Contract::exact).outside_contract);
     }
 
     TEST_CASE("judge_measures_u_and_v") {
