@@ -111,49 +111,15 @@ impl Evaluation {
         Some(Self::Inside(hit))
     }
 
-    /// Shears without a division, `x = ax dz - dx az`, so that everything is a polynomial in the input.
-    ///
-    /// With `e` the relative error of one operation, `m` the largest distance of a vertex from the origin along an
-    /// axis and `r = m |dz|`: a sheared coordinate is off by at most `3e (|ax dz| + |dx az|) <= 6 e r`; so an edge
-    /// function of the vertices b and c by at most `6 e r s + 72 e^2 r^2` from that, `s = |bx| + |by| + |cx| + |cy|`,
-    /// and by `2e (|bx cy| + |by cx|) + e s 2r <= 6 e r s` from its own three operations: together less than `16 e r
-    /// (s + 16 e r)`.
+    /// From the weights of [`Weighed::new`].
     pub(super) fn of<R: Real>(ray: &TriangleRay, triangle: &Triangle) -> Self {
-        let [kx, ky, kz] = ray.axes;
-        let [dx, dy, dz] = [kx, ky, kz].map(|axis| R::from(f64::from(ray.direction[axis])));
-        let from_origin =
-            |axis: usize| triangle.axes[axis].map(|v| R::difference(f64::from(v), f64::from(ray.origin[axis])));
-        let [ax, ay, az] = [kx, ky, kz].map(from_origin);
-        let x: [R; 3] = std::array::from_fn(|corner| ax[corner] * dz - dx * az[corner]);
-        let y: [R; 3] = std::array::from_fn(|corner| ay[corner] * dz - dy * az[corner]);
-        let weights = edge_functions(&x, &y);
-
-        let magnitude = |values: &[R; 3]| values.iter().fold(0.0, |most: f64, v| most.max(v.to_f64().abs()));
-        let distance = magnitude(&ax).max(magnitude(&ay)).max(magnitude(&az));
-        let reach = distance * dz.to_f64().abs();
-        let size: [f64; 3] = std::array::from_fn(|corner| x[corner].to_f64().abs() + y[corner].to_f64().abs());
-        let bound: [f64; 3] = std::array::from_fn(|corner| {
-            let edge_size = size[(corner + 1) % 3] + size[(corner + 2) % 3];
-            16.0 * R::UNIT_ROUNDOFF * reach * (edge_size + 16.0 * R::UNIT_ROUNDOFF * reach)
-        });
-
-        let certain_sign = |corner: usize| {
-            let weight = weights[corner].to_f64();
-            if weight.abs() > bound[corner] { weight } else { 0.0 }
-        };
-        let (any_negative, any_positive) = signs(&[certain_sign(0), certain_sign(1), certain_sign(2)]);
-        if any_negative && any_positive {
+        let Some(Weighed { weights: inside, bound, depths: az }) = Weighed::<R>::new(ray, triangle) else {
             return Self::Outside;
-        }
-
-        // What is left on the wrong side of an edge is so by rounding: it lies on the edge.
-        let inside = weights.map(|weight| {
-            let wrong_side = if any_negative { weight.to_f64() > 0.0 } else { weight.to_f64() < 0.0 };
-            if wrong_side { R::from(0.0) } else { weight }
-        });
+        };
+        let dz = R::from(f64::from(ray.direction[ray.axes[2]]));
         let sum = inside[0] + inside[1] + inside[2];
         let weighted = inside[0] * az[0] + inside[1] * az[1] + inside[2] * az[2];
-        let (sum_size, bound) = (sum.to_f64().abs(), bound[0] + bound[1] + bound[2]);
+        let sum_size = sum.to_f64().abs();
         if bound > RELATIVE_ERROR * sum_size || sum_size == 0.0 {
             return Self::Uncertain;
         }
@@ -178,6 +144,63 @@ impl Evaluation {
         }
         Self::Inside(hit)
     }
+}
+
+/// The edge functions of the true ray, where it does not certainly pass the triangle: they have one sign or are zero.
+pub(super) struct Weighed<R> {
+    pub(super) weights: [R; 3],
+    /// On the errors of all three together.
+    pub(super) bound: f64,
+    /// Of the vertices, along the ray's main axis.
+    depths: [R; 3],
+}
+
+impl<R: Real> Weighed<R> {
+    /// Shears without a division, `x = ax dz - dx az`, so that everything is a polynomial in the input.
+    ///
+    /// With `e` the relative error of one operation, `m` the largest distance of a vertex from the origin along an
+    /// axis and `r = m |dz|`: a sheared coordinate is off by at most `3e (|ax dz| + |dx az|) <= 6 e r`; so an edge
+    /// function of the vertices b and c by at most `6 e r s + 72 e^2 r^2` from that, `s = |bx| + |by| + |cx| + |cy|`,
+    /// and by `2e (|bx cy| + |by cx|) + e s 2r <= 6 e r s` from its own three operations: together less than `16 e r
+    /// (s + 16 e r)`.
+    pub(super) fn new(ray: &TriangleRay, triangle: &Triangle) -> Option<Self> {
+        let [kx, ky, kz] = ray.axes;
+        let [dx, dy, dz] = [kx, ky, kz].map(|axis| R::from(f64::from(ray.direction[axis])));
+        let from_origin =
+            |axis: usize| triangle.axes[axis].map(|v| R::difference(f64::from(v), f64::from(ray.origin[axis])));
+        let [ax, ay, az] = [kx, ky, kz].map(from_origin);
+        let x: [R; 3] = std::array::from_fn(|corner| ax[corner] * dz - dx * az[corner]);
+        let y: [R; 3] = std::array::from_fn(|corner| ay[corner] * dz - dy * az[corner]);
+        let weights = edge_functions(&x, &y);
+
+        let distance = magnitude(&ax).max(magnitude(&ay)).max(magnitude(&az));
+        let reach = distance * dz.to_f64().abs();
+        let size: [f64; 3] = std::array::from_fn(|corner| x[corner].to_f64().abs() + y[corner].to_f64().abs());
+        let bound: [f64; 3] = std::array::from_fn(|corner| {
+            let edge_size = size[(corner + 1) % 3] + size[(corner + 2) % 3];
+            16.0 * R::UNIT_ROUNDOFF * reach * (edge_size + 16.0 * R::UNIT_ROUNDOFF * reach)
+        });
+
+        let certain_sign = |corner: usize| {
+            let weight = weights[corner].to_f64();
+            if weight.abs() > bound[corner] { weight } else { 0.0 }
+        };
+        let (any_negative, any_positive) = signs(&[certain_sign(0), certain_sign(1), certain_sign(2)]);
+        if any_negative && any_positive {
+            return None;
+        }
+
+        // What is left on the wrong side of an edge is so by rounding: it lies on the edge.
+        let weights = weights.map(|weight| {
+            let wrong_side = if any_negative { weight.to_f64() > 0.0 } else { weight.to_f64() < 0.0 };
+            if wrong_side { R::from(0.0) } else { weight }
+        });
+        Some(Self { weights, bound: bound[0] + bound[1] + bound[2], depths: az })
+    }
+}
+
+fn magnitude<R: Real>(values: &[R; 3]) -> f64 {
+    values.iter().fold(0.0, |most: f64, v| most.max(v.to_f64().abs()))
 }
 
 /// Without `f64::max`'s care for NaN.

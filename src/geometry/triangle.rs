@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use robust::Coord;
 
-use super::Aabb;
+use super::{Aabb, Ray};
 use crate::math::{Expansion, gamma};
 
 /// The vertices, a row for each axis: `axes[1][2]` is the y of the third vertex. A ray's axis permutation then is a
@@ -23,6 +23,10 @@ impl Triangle {
 
     fn vertex(&self, corner: usize) -> [f32; 3] {
         self.axes.map(|row| row[corner])
+    }
+
+    pub(crate) fn vertices(&self) -> [[f32; 3]; 3] {
+        [self.vertex(0), self.vertex(1), self.vertex(2)]
     }
 
     pub(crate) fn bounds(&self) -> Aabb {
@@ -71,14 +75,87 @@ impl Triangle {
         })
     }
 
+    /// As [`Triangle::normal`] in `f64`, with a bound on the error of each component, at most 2^-33 of the largest one.
+    ///
+    /// A component is the difference of two products: three roundings in each and one of its own, a relative error of four;
+    /// twice that, so that it covers a few more of what is done with it.
+    pub(super) fn certain_normal(&self) -> (DVec3, f64) {
+        const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 33) as f64;
+        let edges = |axis: usize| {
+            let [a, b, c] = self.axes[axis].map(f64::from);
+            (b - a, c - a)
+        };
+        let (x, y, z) = (edges(0), edges(1), edges(2));
+        let products = |p: (f64, f64), q: (f64, f64)| (p.0 * q.1, q.0 * p.1);
+        let terms = [products(y, z), products(z, x), products(x, y)];
+        let normal = DVec3::from_array(terms.map(|(first, second)| first - second));
+        let size = terms.iter().fold(0.0, |most: f64, (first, second)| most.max(first.abs() + second.abs()));
+        let bound = 4.0 * f64::EPSILON * size;
+        if bound <= RELATIVE_ERROR * normal.abs().max_element() {
+            return (normal, bound);
+        }
+        let normal = DVec3::from_array(self.exact_normal().map(|component| component.to_f64()));
+        (normal, 4.0 * f64::EPSILON * normal.abs().max_element())
+    }
+
+    #[cold]
+    fn exact_normal(&self) -> [Expansion; 3] {
+        let [x, y, z] = self.axes.map(|[a, b, c]| (Expansion::difference(b, a), Expansion::difference(c, a)));
+        let minor = |p: &(Expansion, Expansion), q: &(Expansion, Expansion)| &p.0 * &q.1 - &q.0 * &p.1;
+        [minor(&y, &z), minor(&z, &x), minor(&x, &y)]
+    }
+
+    /// To which side of the plane a direction leads: 1 where the normal points, -1, or 0 along the plane. Exact.
+    pub(super) fn side_of_direction(&self, (normal, bound): (DVec3, f64), direction: Vec3) -> f64 {
+        let d = direction.as_dvec3();
+        let along = normal.dot(d);
+        if along.abs() > 2.0 * bound * d.abs().element_sum() {
+            return along.signum();
+        }
+        let [x, y, z] = self.exact_normal();
+        let [dx, dy, dz] = direction.to_array().map(|d| Expansion::difference(d, 0.0));
+        sign((&x * &dx + &y * &dy + &z * &dz).to_f64())
+    }
+
+    /// On which side of the plane a point is, as [`Triangle::side_of_direction`]. Exact.
+    pub(super) fn side_of_point(&self, (normal, bound): (DVec3, f64), point: Vec3) -> f64 {
+        let from_plane = point.as_dvec3() - Vec3::from_array(self.vertex(0)).as_dvec3();
+        let along = normal.dot(from_plane);
+        if along.abs() > 2.0 * bound * from_plane.abs().element_sum() {
+            return along.signum();
+        }
+        // The volume is positive where the normal points away from the point.
+        -sign(self.signed_volume(point.to_array()))
+    }
+
+    fn relative_to(&self, point: [f32; 3]) -> [[Expansion; 3]; 3] {
+        std::array::from_fn(|axis| self.axes[axis].map(|v| Expansion::difference(v, point[axis])))
+    }
+
     /// Six times the volume between the triangle and the point, `a . (b x c)` of the vertices relative to the point:
     /// computed exactly, then rounded to within an ulp. 0 for a point of the triangle's plane alone.
     pub(crate) fn signed_volume(&self, point: [f32; 3]) -> f64 {
-        let [x, y, z]: [[Expansion; 3]; 3] =
-            std::array::from_fn(|axis| self.axes[axis].map(|v| Expansion::difference(v, point[axis])));
+        let [x, y, z] = self.relative_to(point);
         let minor = |p: &[Expansion; 3], q: &[Expansion; 3]| &p[1] * &q[2] - &p[2] * &q[1];
         (&x[0] * &minor(&y, &z) + &y[0] * &minor(&z, &x) + &z[0] * &minor(&x, &y)).to_f64()
     }
+
+    /// The weights of the vertices where the ray's line meets the plane, up to a common factor: `d . (b x c)` of the first
+    /// one, and so on, each computed exactly, then rounded to within an ulp. All 0 for a line along the plane.
+    #[cold]
+    pub(super) fn weights_along(&self, ray: &Ray) -> [f64; 3] {
+        let [x, y, z] = self.relative_to(ray.origin.to_array());
+        let [dx, dy, dz] = ray.direction.to_array().map(|d| Expansion::difference(d, 0.0));
+        [(1, 2), (2, 0), (0, 1)].map(|(b, c)| {
+            let minor = |p: &[Expansion; 3], q: &[Expansion; 3]| &p[b] * &q[c] - &p[c] * &q[b];
+            (&dx * &minor(&y, &z) + &dy * &minor(&z, &x) + &dz * &minor(&x, &y)).to_f64()
+        })
+    }
+}
+
+/// 0 of 0.
+fn sign(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.signum() }
 }
 
 #[cfg(test)]
