@@ -191,6 +191,12 @@ impl Primitive for Triangle {
     }
 
     #[inline(always)]
+    fn precedes<P: PrecisionMode>(&self, other: &Self, ray: &TriangleRay) -> bool {
+        let in_order = Primitive::ids(self) < Primitive::ids(other);
+        if P::IS_EXACT && other.geometry_id != INVALID_ID { ray.precedes(self, other, in_order) } else { in_order }
+    }
+
+    #[inline(always)]
     fn with_ids(self, geometry_id: u32, primitive_id: u32) -> Self {
         Self { geometry_id, primitive_id, ..self }
     }

@@ -1,10 +1,11 @@
 //! `t`, `u` and `v` of a hit from the ray and the triangle themselves, with a bound on their error.
 
+use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
 use super::Triangle;
-use super::triangle_hit::{Corners, TriangleHit, TriangleRay, edge_functions, signs};
-use crate::math::DoubleDouble;
+use super::triangle_hit::{Corners, PrecisionMode, TriangleHit, TriangleRay, edge_functions};
+use crate::math::{DoubleDouble, rounds_alike, widen};
 use crate::simd::Simd;
 
 /// The number types that a hit is evaluated in.
@@ -57,15 +58,27 @@ pub(crate) enum Evaluation {
 }
 
 /// What [`Evaluation::Inside`] promises.
-const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 31) as f64;
+pub(super) const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 31) as f64;
+
+/// See [`Evaluation::inside`].
+pub(super) const LEAST_NORMAL: f64 = 1.0 / (1u128 << 70) as f64;
 
 impl Evaluation {
     /// As [`Evaluation::of`] in `f64`, for rays that pass well inside the triangle, as nearly all do; `None` for others.
     ///
-    /// The same with coarser bounds: `s` is the sum over all three vertices, and `m |dz| <= s + |dz| max |az|`, because
+    /// With coarser bounds: `s` is the sum over all three vertices, and `m |dz| <= s + |dz| max |az|`, because
     /// `ax dz = x + dx az` and `|dx| <= |dz|`.
+    ///
+    /// For [exact](PrecisionMode::IS_EXACT) hits `None` too where the error of `t` leaves open to which float it rounds, and where a number read as zero for
+    /// being denormal would count: of coordinates that are off by `n = 2^-126` so, `x` is off by `4 n |dz| + 2 n m` at the most,
+    /// less than 2^-49 of `s + |dz| max |az|` as long as `|dz|` and `max |az|` are 2^-70 or more.
     #[inline(always)]
-    pub(super) fn inside<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Self> {
+    pub(super) fn inside<S: Simd, P: PrecisionMode>(
+        simd: S,
+        ray: &TriangleRay,
+        corners: &Corners,
+        t_min: f32,
+    ) -> Option<Self> {
         const E: f64 = f64::UNIT_ROUNDOFF;
         /// With vertices this far away for each length of the direction, `t` beyond its bound is no denormal.
         const LEAST_DEPTH: f64 = 1.0 / (1u128 << 64) as f64;
@@ -93,6 +106,9 @@ impl Evaluation {
         if !simd.beyond3(weights, bound) || 3.0 * bound > RELATIVE_ERROR * sum.abs() {
             return None;
         }
+        if P::IS_EXACT && lesser(depth, dz.abs()) < LEAST_NORMAL {
+            return None;
+        }
         let [az, bz, cz] = simd.values3(simd.mul3(weights, az));
         let weighted = az + bz + cz;
         let t_bound = (6.0 * bound + 5.0 * E * sum.abs()) * depth;
@@ -108,99 +124,123 @@ impl Evaluation {
         if t_bound > RELATIVE_ERROR * weighted.abs() {
             return Some(Self::Near { hit, t, t_error: 2.0 * t_bound * inverse.abs(), t_per_volume: -dz / sum });
         }
+        // Three times the bound instead of twice: for the roundings of the sum and the difference.
+        if P::IS_EXACT && !rounds_alike(t, 3.0 * t_bound * inverse.abs()) {
+            return None;
+        }
         Some(Self::Inside(hit))
     }
 
-    /// From the weights of [`Weighed::new`].
+    /// By the roundings of [`Measured`].
     pub(super) fn of<R: Real>(ray: &TriangleRay, triangle: &Triangle) -> Self {
-        let Some(Weighed { weights: inside, bound, depths: az }) = Weighed::<R>::new(ray, triangle) else {
-            return Self::Outside;
-        };
-        let dz = R::from(f64::from(ray.direction[ray.axes[2]]));
+        let measured = Measured::<R>::of(ray, triangle);
+        let Some(inside) = measured.weights_inside() else { return Self::Outside };
+        let az = measured.depths;
         let sum = inside[0] + inside[1] + inside[2];
         let weighted = inside[0] * az[0] + inside[1] * az[1] + inside[2] * az[2];
-        let sum_size = sum.to_f64().abs();
+        let (sum_size, bound) = (sum.to_f64().abs(), measured.bounds.iter().sum::<f64>());
         if bound > RELATIVE_ERROR * sum_size || sum_size == 0.0 {
             return Self::Uncertain;
         }
-        let denominator = sum.to_f64() * dz.to_f64();
+        let dz = measured.direction.to_f64();
+        let denominator = sum.to_f64() * dz;
         let t = weighted.to_f64() / denominator;
         let hit = TriangleHit {
             t: t as f32,
             u: (inside[1].to_f64() / sum.to_f64()) as f32,
             v: (inside[2].to_f64() / sum.to_f64()) as f32,
         };
-        let depths = az.map(R::to_f64);
-        let range = depths.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-            - depths.iter().copied().fold(f64::INFINITY, f64::min);
-        // Wrong weights move the hit within the triangle; five roundings make the weighted sum and its terms.
-        let t_bound = bound * range + 5.0 * R::UNIT_ROUNDOFF * sum_size * magnitude(&az);
+        let t_bound = measured.t_bound(sum_size);
         if t_bound > RELATIVE_ERROR * weighted.to_f64().abs() {
             // Twice, for the rounding of the division and of the bound itself.
             let t_error = 2.0 * t_bound / denominator.abs();
             // With n the normal, t = volume / (n . d); and the weights' sum is -(n . d) dz, seen along the sheared ray.
-            let t_per_volume = -dz.to_f64() / sum.to_f64();
+            let t_per_volume = -dz / sum.to_f64();
             return Self::Near { hit, t, t_error, t_per_volume };
         }
         Self::Inside(hit)
     }
 }
 
-/// The edge functions of the true ray, where it does not certainly pass the triangle: they have one sign or are zero.
-pub(super) struct Weighed<R> {
+/// A triangle as a ray sees it, with bounds on the errors.
+///
+/// Sheared without a division, `x = ax dz - dx az`, so that everything is a polynomial in the input.
+///
+/// With `e` the relative error of one operation, `m` the largest distance of a vertex from the origin along an
+/// axis and `r = m |dz|`: a sheared coordinate is off by at most `3e (|ax dz| + |dx az|) <= 6 e r`; so an edge
+/// function of the vertices b and c by at most `6 e r s + 72 e^2 r^2` from that, `s = |bx| + |by| + |cx| + |cy|`,
+/// and by `2e (|bx cy| + |by cx|) + e s 2r <= 6 e r s` from its own three operations: together less than `16 e r
+/// (s + 16 e r)`.
+pub(super) struct Measured<R> {
+    /// Edge functions.
     pub(super) weights: [R; 3],
-    /// On the errors of all three together.
-    pub(super) bound: f64,
+    /// How far each is off at the most.
+    pub(super) bounds: [f64; 3],
     /// Of the vertices, along the ray's main axis.
-    depths: [R; 3],
+    pub(super) depths: [R; 3],
+    /// Along that axis.
+    pub(super) direction: R,
 }
 
-impl<R: Real> Weighed<R> {
-    /// Shears without a division, `x = ax dz - dx az`, so that everything is a polynomial in the input.
-    ///
-    /// With `e` the relative error of one operation, `m` the largest distance of a vertex from the origin along an
-    /// axis and `r = m |dz|`: a sheared coordinate is off by at most `3e (|ax dz| + |dx az|) <= 6 e r`; so an edge
-    /// function of the vertices b and c by at most `6 e r s + 72 e^2 r^2` from that, `s = |bx| + |by| + |cx| + |cy|`,
-    /// and by `2e (|bx cy| + |by cx|) + e s 2r <= 6 e r s` from its own three operations: together less than `16 e r
-    /// (s + 16 e r)`.
-    pub(super) fn new(ray: &TriangleRay, triangle: &Triangle) -> Option<Self> {
+impl<R: Real> Measured<R> {
+    pub(super) fn of(ray: &TriangleRay, triangle: &Triangle) -> Self {
         let [kx, ky, kz] = ray.axes;
-        let [dx, dy, dz] = [kx, ky, kz].map(|axis| R::from(f64::from(ray.direction[axis])));
-        let from_origin =
-            |axis: usize| triangle.axes[axis].map(|v| R::difference(f64::from(v), f64::from(ray.origin[axis])));
+        let [dx, dy, dz] = [kx, ky, kz].map(|axis| R::from(widen(ray.direction[axis])));
+        let from_origin = |axis: usize| triangle.axes[axis].map(|v| R::difference(widen(v), widen(ray.origin[axis])));
         let [ax, ay, az] = [kx, ky, kz].map(from_origin);
         let x: [R; 3] = std::array::from_fn(|corner| ax[corner] * dz - dx * az[corner]);
         let y: [R; 3] = std::array::from_fn(|corner| ay[corner] * dz - dy * az[corner]);
-        let weights = edge_functions(&x, &y);
 
         let distance = magnitude(&ax).max(magnitude(&ay)).max(magnitude(&az));
         let reach = distance * dz.to_f64().abs();
         let size: [f64; 3] = std::array::from_fn(|corner| x[corner].to_f64().abs() + y[corner].to_f64().abs());
-        let bound: [f64; 3] = std::array::from_fn(|corner| {
+        let bounds = std::array::from_fn(|corner| {
             let edge_size = size[(corner + 1) % 3] + size[(corner + 2) % 3];
             16.0 * R::UNIT_ROUNDOFF * reach * (edge_size + 16.0 * R::UNIT_ROUNDOFF * reach)
         });
+        Self { weights: edge_functions(&x, &y), bounds, depths: az, direction: dz }
+    }
 
-        let certain_sign = |corner: usize| {
-            let weight = weights[corner].to_f64();
-            if weight.abs() > bound[corner] { weight } else { 0.0 }
-        };
-        let (any_negative, any_positive) = signs(&[certain_sign(0), certain_sign(1), certain_sign(2)]);
-        if any_negative && any_positive {
+    /// `Equal` where rounding leaves it open.
+    pub(super) fn certain_signs(&self) -> [Ordering; 3] {
+        std::array::from_fn(|corner| {
+            let weight = self.weights[corner].to_f64();
+            if weight.abs() > self.bounds[corner] { weight.total_cmp(&0.0) } else { Ordering::Equal }
+        })
+    }
+
+    /// The weights of a point of the triangle: none where the ray passes it for certain.
+    pub(super) fn weights_inside(&self) -> Option<[R; 3]> {
+        let signs = self.certain_signs();
+        let any_negative = signs.contains(&Ordering::Less);
+        if any_negative && signs.contains(&Ordering::Greater) {
             return None;
         }
-
         // What is left on the wrong side of an edge is so by rounding: it lies on the edge.
-        let weights = weights.map(|weight| {
+        Some(self.weights.map(|weight| {
             let wrong_side = if any_negative { weight.to_f64() > 0.0 } else { weight.to_f64() < 0.0 };
             if wrong_side { R::from(0.0) } else { weight }
-        });
-        Some(Self { weights, bound: bound[0] + bound[1] + bound[2], depths: az })
+        }))
+    }
+
+    /// How far the weighted sum of the depths is off at the most, where the sum of the weights is of this size. Wrong weights
+    /// move the hit within the triangle; five roundings make the weighted sum and its terms.
+    pub(super) fn t_bound(&self, sum: f64) -> f64 {
+        let depths = self.depths.map(R::to_f64);
+        let range = depths.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+            - depths.iter().copied().fold(f64::INFINITY, f64::min);
+        self.bounds.iter().sum::<f64>() * range + 5.0 * R::UNIT_ROUNDOFF * sum * magnitude(&self.depths)
     }
 }
 
 fn magnitude<R: Real>(values: &[R; 3]) -> f64 {
     values.iter().fold(0.0, |most: f64, v| most.max(v.to_f64().abs()))
+}
+
+/// Without `f64::min`'s care for NaN.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// Without `f64::max`'s care for NaN.

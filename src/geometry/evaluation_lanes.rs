@@ -1,7 +1,9 @@
 //! Eight hits at once, each of one ray on one triangle: for those that a single evaluation finds
 //! [inside](super::evaluation::Evaluation::Inside), the same to the bit.
 
-use super::{Triangle, TriangleHit, TriangleRay};
+use super::evaluation::{LEAST_NORMAL, RELATIVE_ERROR};
+use super::{PrecisionMode, Triangle, TriangleHit, TriangleRay};
+use crate::math::rounds_alike;
 
 /// How many hits are evaluated at once.
 pub(crate) const HITS: usize = 8;
@@ -37,9 +39,8 @@ impl HitLanes {
     ///
     /// By the operations of `Evaluation::inside`, in their order.
     #[inline(always)]
-    pub(crate) fn evaluate(&self) -> [Row; 3] {
+    pub(crate) fn evaluate<P: PrecisionMode>(&self) -> [Row; 3] {
         const ROUNDOFF: f64 = f64::EPSILON * 0.5;
-        const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 31) as f64;
 
         let [ox, oy, oz] = &self.origin;
         let [dx, dy, dz] = &self.direction;
@@ -72,7 +73,13 @@ impl HitLanes {
                 is_inside & (3.0 * bound <= RELATIVE_ERROR * sum.abs()) & (t_bound <= RELATIVE_ERROR * weighted.abs());
             let inverse = 1.0 / (sum * dz);
             let per_sum = dz * inverse;
-            out_t[lane] = if is_settled { (weighted * inverse) as f32 } else { f32::NAN };
+            let t = weighted * inverse;
+            let is_settled = is_settled
+                & (!P::IS_EXACT
+                    || (depth >= LEAST_NORMAL)
+                        & (dz.abs() >= LEAST_NORMAL)
+                        & rounds_alike(t, 3.0 * t_bound * inverse.abs()));
+            out_t[lane] = if is_settled { t as f32 } else { f32::NAN };
             out_u[lane] = (b * per_sum) as f32;
             out_v[lane] = (c * per_sum) as f32;
         }

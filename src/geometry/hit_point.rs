@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::evaluation::{Real, Weighed};
+use super::evaluation::{Measured, Real};
 use super::sphere::SphereRay;
 use super::{Ray, Sphere, Triangle, TriangleRay};
 use crate::math::DoubleDouble;
@@ -32,15 +32,16 @@ impl Weights {
     fn of<R: Real>(ray: &TriangleRay, triangle: &Triangle) -> Self {
         /// Well below the rounding of positions to `f32`.
         const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 31) as f64;
-        let Some(Weighed { weights, bound, .. }) = Weighed::<R>::new(ray, triangle) else { return Self::None };
+        let measured = Measured::<R>::of(ray, triangle);
+        let Some(weights) = measured.weights_inside() else { return Self::None };
         let weights = weights.map(R::to_f64);
-        let error = bound / weights.iter().sum::<f64>().abs();
+        let error = measured.bounds.iter().sum::<f64>() / weights.iter().sum::<f64>().abs();
         // Not where both are 0, which makes a NaN.
         if error < RELATIVE_ERROR { Self::Known(weights, error) } else { Self::Uncertain }
     }
 
-    fn of_exact(ray: &Ray, triangle: &Triangle) -> Self {
-        let weights = triangle.weights_along(ray);
+    fn of_exact(ray: &TriangleRay, triangle: &Triangle) -> Self {
+        let weights = ray.exact_weights(triangle);
         let has = |is_such: fn(&f64) -> bool| weights.iter().any(is_such);
         // All are 0 where the line lies in the plane.
         if has(|&w| w < 0.0) == has(|&w| w > 0.0) { Self::None } else { Self::Known(weights, 0.0) }
@@ -62,7 +63,7 @@ impl Triangle {
             known = Weights::of::<DoubleDouble>(&ready, self);
         }
         if let Weights::Uncertain = known {
-            known = Weights::of_exact(ray, self);
+            known = Weights::of_exact(&ready, self);
         }
         let ([a, b, c], relative_error) = match known {
             Weights::Known(weights, error) => (weights, error),

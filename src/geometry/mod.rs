@@ -4,6 +4,7 @@ mod aabb;
 mod clip;
 mod evaluation;
 mod evaluation_lanes;
+mod exact;
 mod hit_point;
 mod mesh_view;
 mod offset_origin;
@@ -24,4 +25,6 @@ pub use mesh_view::{IndexBytes, IndexView, PositionView, SphereView, TriangleVie
 pub use ray::{Hit, INVALID_ID, Ray};
 pub(crate) use sphere::{Sphere, SpherePart, SphereRay};
 pub(crate) use triangle::Triangle;
-pub(crate) use triangle_hit::{Accurate, Fast, Interval, PrecisionMode, TriangleHit, TriangleRay};
+pub(crate) use triangle_hit::{
+    Accurate, Exact, Fast, Interval, PrecisionMode, TriangleHit, TriangleRay, edge_slack, least_doubt,
+};

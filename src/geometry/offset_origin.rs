@@ -49,7 +49,7 @@ impl Triangle {
     /// it, at a `t` that is none of the plane's.
     pub(crate) fn offset_origin<P: PrecisionMode>(&self, position: Vec3, error: Vec3, direction: Vec3) -> Option<Vec3> {
         let normal = self.certain_normal();
-        let side = if self.side_of_direction(normal, direction) < 0.0 { -1.0 } else { 1.0 };
+        let side: f64 = if self.side_of_direction(normal, direction) < 0.0 { -1.0 } else { 1.0 };
         let outward = side * normal.0.normalize();
         let bounds = self.bounds();
         let size = (bounds.upper.as_dvec3() - bounds.lower.as_dvec3()).max_element();
@@ -59,7 +59,8 @@ impl Triangle {
             |step| rounded_along(outward, position.as_dvec3() + step * outward),
             |origin| {
                 let ray = Ray { origin, t_min: AHEAD.t_min, direction, t_max: AHEAD.t_max };
-                self.side_of_point(normal, origin) == side && TriangleRay::new(&ray).hit::<P>(self, AHEAD).is_none()
+                side * self.side_of_point(origin.to_array()) > 0.0
+                    && TriangleRay::new(&ray).hit::<P>(self, AHEAD).is_none()
             },
         )
     }

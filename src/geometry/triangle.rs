@@ -1,10 +1,10 @@
 //! A triangle as every structure stores it.
 
 use glam::{DVec3, Vec3};
-use robust::Coord;
+use robust::{Coord, Coord3D};
 
-use super::{Aabb, Ray};
-use crate::math::{Expansion, gamma};
+use super::Aabb;
+use crate::math::{Expansion, gamma, widen};
 
 /// The vertices, a row for each axis: `axes[1][2]` is the y of the third vertex. A ray's axis permutation then is a
 /// choice of rows.
@@ -105,57 +105,56 @@ impl Triangle {
         [minor(&y, &z), minor(&z, &x), minor(&x, &y)]
     }
 
-    /// To which side of the plane a direction leads: 1 where the normal points, -1, or 0 along the plane. Exact.
+    /// To which side of the plane a direction leads, exactly; as [`Triangle::side_of_point`]. Takes what
+    /// [`Triangle::certain_normal`] gives.
     pub(super) fn side_of_direction(&self, (normal, bound): (DVec3, f64), direction: Vec3) -> f64 {
         let d = direction.as_dvec3();
         let along = normal.dot(d);
         if along.abs() > 2.0 * bound * d.abs().element_sum() {
-            return along.signum();
+            return along;
         }
         let [x, y, z] = self.exact_normal();
         let [dx, dy, dz] = direction.to_array().map(|d| Expansion::difference(d, 0.0));
-        sign((&x * &dx + &y * &dy + &z * &dz).to_f64())
+        (&x * &dx + &y * &dy + &z * &dz).to_f64()
     }
 
-    /// On which side of the plane a point is, as [`Triangle::side_of_direction`]. Exact.
-    pub(super) fn side_of_point(&self, (normal, bound): (DVec3, f64), point: Vec3) -> f64 {
-        let from_plane = point.as_dvec3() - Vec3::from_array(self.vertex(0)).as_dvec3();
-        let along = normal.dot(from_plane);
-        if along.abs() > 2.0 * bound * from_plane.abs().element_sum() {
-            return along.signum();
-        }
-        // The volume is positive where the normal points away from the point.
-        -sign(self.signed_volume(point.to_array()))
+    /// Whether each vertex is one of the other's.
+    pub(crate) fn has_corners_of(&self, other: &Self) -> bool {
+        let is_corner = |at: [f32; 3]| (0..3).any(|corner| other.vertex(corner) == at);
+        (0..3).all(|corner| is_corner(self.vertex(corner)))
     }
 
-    fn relative_to(&self, point: [f32; 3]) -> [[Expansion; 3]; 3] {
-        std::array::from_fn(|axis| self.axes[axis].map(|v| Expansion::difference(v, point[axis])))
+    /// Whether all vertices of both have one coordinate in common.
+    pub(crate) fn lies_across_an_axis_with(&self, other: &Self) -> bool {
+        (0..3).any(|axis| {
+            let at = self.axes[axis][0];
+            self.axes[axis] == [at; 3] && other.axes[axis] == [at; 3]
+        })
+    }
+
+    /// Exactly.
+    pub(crate) fn lies_in_plane_of(&self, other: &Self) -> bool {
+        (0..3).all(|corner| other.side_of_point(self.vertex(corner)) == 0.0)
+    }
+
+    /// On which side of the plane a point is: above 0 where the normal points, below, or 0 in the plane. Exactly (Shewchuk
+    /// 1997: orient3d).
+    pub(super) fn side_of_point(&self, point: [f32; 3]) -> f64 {
+        let [a, b, c, point] = [self.vertex(0), self.vertex(1), self.vertex(2), point].map(|point| {
+            let [x, y, z] = point.map(widen);
+            Coord3D { x, y, z }
+        });
+        -robust::orient3d(a, b, c, point)
     }
 
     /// Six times the volume between the triangle and the point, `a . (b x c)` of the vertices relative to the point:
     /// computed exactly, then rounded to within an ulp. 0 for a point of the triangle's plane alone.
     pub(crate) fn signed_volume(&self, point: [f32; 3]) -> f64 {
-        let [x, y, z] = self.relative_to(point);
+        let [x, y, z]: [[Expansion; 3]; 3] =
+            std::array::from_fn(|axis| self.axes[axis].map(|v| Expansion::difference(v, point[axis])));
         let minor = |p: &[Expansion; 3], q: &[Expansion; 3]| &p[1] * &q[2] - &p[2] * &q[1];
         (&x[0] * &minor(&y, &z) + &y[0] * &minor(&z, &x) + &z[0] * &minor(&x, &y)).to_f64()
     }
-
-    /// The weights of the vertices where the ray's line meets the plane, up to a common factor: `d . (b x c)` of the first
-    /// one, and so on, each computed exactly, then rounded to within an ulp. All 0 for a line along the plane.
-    #[cold]
-    pub(super) fn weights_along(&self, ray: &Ray) -> [f64; 3] {
-        let [x, y, z] = self.relative_to(ray.origin.to_array());
-        let [dx, dy, dz] = ray.direction.to_array().map(|d| Expansion::difference(d, 0.0));
-        [(1, 2), (2, 0), (0, 1)].map(|(b, c)| {
-            let minor = |p: &[Expansion; 3], q: &[Expansion; 3]| &p[b] * &q[c] - &p[c] * &q[b];
-            (&dx * &minor(&y, &z) + &dy * &minor(&z, &x) + &dz * &minor(&x, &y)).to_f64()
-        })
-    }
-}
-
-/// 0 of 0.
-fn sign(value: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value.signum() }
 }
 
 #[cfg(test)]

@@ -12,13 +12,13 @@
 //! something underflows. That is the band: a triangle
 //! that the ray passes at less than this distance may be taken for hit, its neighbour then is refused.
 
-use std::ops::{Mul, Sub};
+use std::ops::{Mul, Neg, Sub};
 
 use glam::Vec4;
 
 use super::evaluation::Evaluation;
 use super::{Ray, Triangle};
-use crate::math::DoubleDouble;
+use crate::math::{DoubleDouble, UNIT_ROUNDOFF};
 use crate::simd::{Scalar, Simd};
 
 /// What a triangle test found. `t` is finite.
@@ -71,16 +71,21 @@ impl Interval {
     }
 }
 
-/// How `t`, `u` and `v` of an accepted triangle are computed.
+/// How triangles are accepted, and `t`, `u` and `v` of those computed.
 pub(crate) trait PrecisionMode {
+    /// Whether it is the ray itself that decides, not its sheared coordinates in `f32`: these then refuse or accept only what
+    /// their rounding leaves no doubt about.
+    const IS_EXACT: bool;
     /// Whether hits can be evaluated several at once.
     const HAS_LANES: bool;
 
-    /// A hit outside the interval may be given or not: the caller looks.
-    fn evaluate(
+    /// The hit of a triangle about which `f32` did not decide. One outside the interval may be given or not: the caller
+    /// looks.
+    fn settle(
         ray: &TriangleRay,
         triangle: &Triangle,
-        sheared: &Weights<f64>,
+        x: &[f32; 3],
+        y: &[f32; 3],
         interval: Interval,
     ) -> Option<TriangleHit>;
 
@@ -101,6 +106,9 @@ pub(crate) struct Fast;
 
 /// From the ray and the triangle themselves, in `f64` or, where that is not provably enough, in twice its precision.
 pub(crate) struct Accurate;
+
+/// Decided as if all were computed without rounding, `t` rounded once; `u` and `v` as [`Accurate`].
+pub(crate) struct Exact;
 
 impl TriangleRay {
     /// Expects a valid ray.
@@ -130,7 +138,8 @@ impl TriangleRay {
         // zero, or NaN where both overflowed. A nonzero sign settles it here; the rest is settled in f64, where these
         // products are exact.
         let edges = edge_functions(&x, &y);
-        let (any_negative, any_positive) = signs(&edges);
+        let doubt = if P::IS_EXACT { edge_doubt(&x, &y, &z) } else { 0.0 };
+        let (any_negative, any_positive) = signs_beyond(&edges, doubt);
         if any_negative && any_positive {
             return None;
         }
@@ -144,7 +153,7 @@ impl TriangleRay {
         if is_behind && interval.t_min >= 0.0 {
             return None;
         }
-        self.settle::<P>(triangle, &x, &y, interval).filter(|hit| interval.contains(hit.t) && hit.t.is_finite())
+        P::settle(self, triangle, &x, &y, interval).filter(|hit| interval.contains(hit.t) && hit.t.is_finite())
     }
 
     /// [`TriangleRay::hit`] for a triangle whose `f32` edge functions have one sign, none zero: it is taken for hit,
@@ -175,9 +184,7 @@ impl TriangleRay {
     #[cold]
     pub(super) fn deciding_weights(&self, triangle: &Triangle) -> Option<[f64; 3]> {
         let (x, y, _) = self.shear(&self.corners(triangle));
-        let weights = edge_functions(&x.map(f64::from), &y.map(f64::from));
-        let (any_negative, any_positive) = signs(&weights);
-        (any_negative != any_positive && weights.iter().sum::<f64>().is_finite()).then_some(weights)
+        sheared_weights(&x, &y).filter(|weights| weights.iter().sum::<f64>().is_finite())
     }
 
     /// Relative to the origin, so that the ray is the axis of z.
@@ -198,23 +205,6 @@ impl TriangleRay {
         [triangle.axes[kx], triangle.axes[ky], triangle.axes[kz]]
     }
 
-    /// The exact decision on sheared coordinates, and the hit's parameters.
-    #[inline(never)]
-    fn settle<P: PrecisionMode>(
-        &self,
-        triangle: &Triangle,
-        x: &[f32; 3],
-        y: &[f32; 3],
-        interval: Interval,
-    ) -> Option<TriangleHit> {
-        let weights = edge_functions(&x.map(f64::from), &y.map(f64::from));
-        match signs(&weights) {
-            // All zero: seen edge-on, or NaN from coordinates beyond the range of f32.
-            (true, true) | (false, false) => None,
-            _ => P::evaluate(self, triangle, &weights, interval),
-        }
-    }
-
     /// Interpolates `t`, `u` and `v` by weights that agree in sign; `z` are distances along the ray's main axis.
     fn interpolate(&self, weights: &Weights<f64>, z: &[f64; 3]) -> TriangleHit {
         let [a, b, c] = weights;
@@ -230,7 +220,20 @@ impl TriangleRay {
 }
 
 impl PrecisionMode for Fast {
+    const IS_EXACT: bool = false;
     const HAS_LANES: bool = false;
+
+    #[inline(never)]
+    fn settle(
+        ray: &TriangleRay,
+        triangle: &Triangle,
+        x: &[f32; 3],
+        y: &[f32; 3],
+        _interval: Interval,
+    ) -> Option<TriangleHit> {
+        let weights = sheared_weights(x, y)?;
+        Some(ray.interpolate(&weights, &ray.main_axis_distances(triangle)))
+    }
 
     /// `t` from the triangle's plane or from the weights, whichever is off by less. In roundings, times the distance from the
     /// origin and over the weights' sum, the first is off by the length of the normal, the second by the range of depths
@@ -268,15 +271,6 @@ impl PrecisionMode for Fast {
         (t.is_finite() & u.is_finite() & v.is_finite()).then_some(TriangleHit { t, u, v })
     }
 
-    fn evaluate(
-        ray: &TriangleRay,
-        triangle: &Triangle,
-        sheared: &Weights<f64>,
-        _interval: Interval,
-    ) -> Option<TriangleHit> {
-        Some(ray.interpolate(sheared, &ray.main_axis_distances(triangle)))
-    }
-
     #[inline(always)]
     fn evaluate_certain<S: Simd>(_simd: S, ray: &TriangleRay, corners: &Corners, _t_min: f32) -> Option<Evaluation> {
         let (x, y, z) = ray.shear(corners);
@@ -285,7 +279,31 @@ impl PrecisionMode for Fast {
 }
 
 impl PrecisionMode for Accurate {
+    const IS_EXACT: bool = false;
     const HAS_LANES: bool = true;
+
+    #[inline(never)]
+    fn settle(
+        ray: &TriangleRay,
+        triangle: &Triangle,
+        x: &[f32; 3],
+        y: &[f32; 3],
+        interval: Interval,
+    ) -> Option<TriangleHit> {
+        let sheared = sheared_weights(x, y)?;
+        match Evaluation::inside::<_, Self>(Scalar, ray, &ray.corners(triangle), interval.t_min)
+            .unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle))
+        {
+            Evaluation::Inside(hit) => Some(hit),
+            Evaluation::Behind => None,
+            Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => None,
+            Evaluation::Outside => Some(within_the_band(ray, triangle, &sheared)),
+            Evaluation::Near { hit, .. } => evaluate_slowly(ray, triangle, interval, || hit),
+            Evaluation::Uncertain => {
+                evaluate_slowly(ray, triangle, interval, || within_the_band(ray, triangle, &sheared))
+            }
+        }
+    }
 
     #[inline(always)]
     fn evaluate_sheared(
@@ -297,30 +315,87 @@ impl PrecisionMode for Accurate {
         None
     }
 
-    fn evaluate(
+    #[inline(always)]
+    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Evaluation> {
+        Evaluation::inside::<S, Self>(simd, ray, corners, t_min)
+    }
+}
+
+impl PrecisionMode for Exact {
+    const IS_EXACT: bool = true;
+    const HAS_LANES: bool = true;
+
+    #[inline(never)]
+    fn settle(
         ray: &TriangleRay,
         triangle: &Triangle,
-        sheared: &Weights<f64>,
+        _x: &[f32; 3],
+        _y: &[f32; 3],
         interval: Interval,
     ) -> Option<TriangleHit> {
-        match Evaluation::inside(Scalar, ray, &ray.corners(triangle), interval.t_min)
-            .unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle))
-        {
-            Evaluation::Inside(hit) => Some(hit),
-            Evaluation::Behind => None,
-            Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => None,
-            Evaluation::Outside => Some(within_the_band(ray, triangle, sheared)),
-            Evaluation::Near { hit, .. } => evaluate_slowly(ray, triangle, interval, || hit),
-            Evaluation::Uncertain => {
-                evaluate_slowly(ray, triangle, interval, || within_the_band(ray, triangle, sheared))
-            }
+        match Evaluation::inside::<_, Self>(Scalar, ray, &ray.corners(triangle), interval.t_min) {
+            Some(Evaluation::Inside(hit)) => Some(hit),
+            Some(Evaluation::Behind) => None,
+            Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
+            _ => ray.hit_exactly(triangle),
         }
     }
 
     #[inline(always)]
-    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Evaluation> {
-        Evaluation::inside(simd, ray, corners, t_min)
+    fn evaluate_sheared(
+        _ray: &TriangleRay,
+        _corners: &Corners,
+        _sheared: &Weights<f32>,
+        _z: &[f32; 3],
+    ) -> Option<TriangleHit> {
+        None
     }
+
+    #[inline(always)]
+    fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Evaluation> {
+        Evaluation::inside::<S, Self>(simd, ray, corners, t_min)
+    }
+}
+
+/// How far the edge functions of sheared coordinates are from those of the exact ones, at the most. Infinite or NaN where
+/// something was beyond the range of `f32`.
+///
+/// With `u = 2^-24`, `s` the sum of all `|x|` and `|y|` and `m` the largest `|z|`, no coordinate exceeded `s + m` before the
+/// shear, so the sheared ones are off by `e = 2 u s + 6 u m` at the most (see the top). That moves an edge function by `e s + 2 e^2`;
+/// its own products and their difference round by `2 u (|x0 y1| + |y0 x1|) <= u s^2 / 2`. The factors are a little larger for the
+/// roundings of the bound itself, and absolute terms cover underflow, flushed to zero or not.
+#[inline(always)]
+fn edge_doubt(x: &[f32; 3], y: &[f32; 3], z: &[f32; 3]) -> f32 {
+    let sum = |values: &[f32; 3]| values[0].abs() + values[1].abs() + values[2].abs();
+    let size = sum(x) + sum(y);
+    let depth = greater(greater(z[0].abs(), z[1].abs()), z[2].abs());
+    let moved = 2.25 * UNIT_ROUNDOFF * size + 6.5 * UNIT_ROUNDOFF * depth + LEAST_DOUBT;
+    moved * (size + 2.25 * moved) + 0.75 * UNIT_ROUNDOFF * size * size + LEAST_DOUBT
+}
+
+/// 2^-120: what 64 results that underflow add up to.
+const LEAST_DOUBT: f32 = 1.0 / (1u128 << 120) as f32;
+
+/// A NaN is kept if it is the first.
+#[inline(always)]
+fn greater(a: f32, b: f32) -> f32 {
+    if a < b { b } else { a }
+}
+
+/// The slack `w` of edge functions in one scene: those of sheared coordinates are off by `w s + w^2 + 2^-120` at the most, where
+/// `s` is the sum of all `|x|` and `|y|`. `reach` is the largest distance `M` along an axis from the origin to a corner of the scene.
+///
+/// As [`edge_doubt`], with `M` for all coordinates before the shear: these are off by `e = 6 u M`; `|x0 y1| + |y0 x1|` is at most
+/// `M s` and some roundings, because sheared coordinates do not exceed `2 M`, so products and difference round by `2.2 u M s`.
+#[inline(always)]
+pub(crate) fn edge_slack(reach: f32) -> f32 {
+    9.0 * UNIT_ROUNDOFF * reach + LEAST_DOUBT
+}
+
+/// `w^2 + 2^-120` of [`edge_slack`].
+#[inline(always)]
+pub(crate) fn least_doubt(edge_slack: f32) -> f32 {
+    edge_slack * edge_slack + LEAST_DOUBT
 }
 
 /// In twice the precision, and exactly what is still uncertain. `otherwise` is for a triangle that turns out to be
@@ -357,12 +432,20 @@ pub(super) fn edge_functions<T: Copy + Sub<Output = T> + Mul<Output = T>>(x: &[T
     [x[2] * y[1] - y[2] * x[1], x[0] * y[2] - y[0] * x[2], x[1] * y[0] - y[1] * x[0]]
 }
 
-/// Whether any is below zero, and whether any is above. A NaN is neither.
+/// What sheared coordinates decide, exactly: the weights if the ray hits. All are zero where it sees the triangle edge-on,
+/// and NaN where coordinates are beyond the range of `f32`.
 #[inline(always)]
-pub(super) fn signs<T: Copy + PartialOrd + Default>(values: &[T; 3]) -> (bool, bool) {
-    let zero = T::default();
+fn sheared_weights(x: &[f32; 3], y: &[f32; 3]) -> Option<Weights<f64>> {
+    let weights = edge_functions(&x.map(f64::from), &y.map(f64::from));
+    let (any_negative, any_positive) = signs_beyond(&weights, 0.0);
+    (any_negative != any_positive).then_some(weights)
+}
+
+/// Whether any is below `-bound`, and whether any is above `bound`. A NaN is neither.
+#[inline(always)]
+fn signs_beyond<T: Copy + PartialOrd + Neg<Output = T>>(values: &[T; 3], bound: T) -> (bool, bool) {
     let [a, b, c] = *values;
-    ((a < zero) | (b < zero) | (c < zero), (a > zero) | (b > zero) | (c > zero))
+    ((a < -bound) | (b < -bound) | (c < -bound), (a > bound) | (b > bound) | (c > bound))
 }
 
 #[cfg(test)]

@@ -3,9 +3,11 @@
 //! Source: Shewchuk 1997, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
 //! section 2: GROW-EXPANSION with zero elimination, and products as sums of scaled expansions.
 
+use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
 use super::error_free::{two_product, two_sum};
+use super::float::widen;
 
 /// The components do not overlap, none is zero, and each is larger than those before it.
 #[derive(Clone, Debug, Default)]
@@ -17,8 +19,8 @@ impl Expansion {
     /// The exact difference.
     pub(crate) fn difference(a: f32, b: f32) -> Self {
         let mut difference = Self::default();
-        difference.grow(f64::from(a));
-        difference.grow(-f64::from(b));
+        difference.grow(widen(a));
+        difference.grow(-widen(b));
         difference
     }
 
@@ -39,9 +41,22 @@ impl Expansion {
         }
     }
 
+    /// Below, at or above zero.
+    pub(crate) fn sign(&self) -> Ordering {
+        self.components.last().map_or(Ordering::Equal, |largest| largest.total_cmp(&0.0))
+    }
+
     /// Within an ulp, with the right sign; 0 for 0 alone.
     pub(crate) fn to_f64(&self) -> f64 {
         self.components.iter().sum()
+    }
+}
+
+impl From<f64> for Expansion {
+    fn from(value: f64) -> Self {
+        let mut expansion = Self::default();
+        expansion.grow(value);
+        expansion
     }
 }
 

@@ -11,6 +11,21 @@ pub(crate) const fn gamma(n: u32) -> f32 {
     nu / (1.0 - nu)
 }
 
+/// The same number. A conversion would read a denormal one as 0 where the host has denormals-are-zero set.
+#[inline(always)]
+pub(crate) fn widen(value: f32) -> f64 {
+    const EXPONENT: u32 = 0x7F80_0000;
+    let bits = value.to_bits();
+    if bits & EXPONENT != 0 { f64::from(value) } else { widen_denormal(bits) }
+}
+
+#[cold]
+fn widen_denormal(bits: u32) -> f64 {
+    const LEAST: f64 = 1.0 / (1u128 << 127) as f64 / (1u32 << 22) as f64;
+    let magnitude = f64::from(bits & 0x007F_FFFF) * LEAST;
+    if bits >> 31 == 0 { magnitude } else { -magnitude }
+}
+
 /// The power of two `s` with `s * magnitude` in `[1, 2)` or as near to it as a normal `s` comes. `magnitude` is
 /// positive and finite.
 pub(crate) fn scale_by_power_of_two_near(magnitude: f32) -> f32 {
@@ -28,6 +43,16 @@ mod tests {
     #[test]
     fn gamma_of_one_is_just_above_the_unit_roundoff() {
         assert!(gamma(1) >= UNIT_ROUNDOFF && gamma(1) < 1.001 * UNIT_ROUNDOFF);
+    }
+
+    #[test]
+    fn widen_keeps_every_number() {
+        for bits in [0, 1, 0x0000_FFFF, 0x007F_FFFF, 0x0080_0000, 0x3F80_0001, 0x7F7F_FFFF, 0x7F80_0000] {
+            for value in [f32::from_bits(bits), -f32::from_bits(bits)] {
+                assert_eq!(widen(value).to_bits(), f64::from(value).to_bits(), "{value:e}");
+            }
+        }
+        assert!(widen(f32::NAN).is_nan());
     }
 
     #[test]

@@ -8,15 +8,10 @@ use arrayvec::ArrayVec;
 use super::builder::Geometry;
 use super::flatten::{Balls, Flat, Meshes, flatten};
 use super::{BuildError, BuildOptions, Content, Scene, threads};
-use crate::accel::{
-    self, AnyAccel, BuildContext, Places, Plan, Precision, PrimitiveSource, Shape, Stats, Structure, Watch,
-};
+use crate::accel::{self, AnyAccel, BuildContext, Places, Plan, PrimitiveSource, Shape, Stats, Structure, Watch};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
-    if options.precision == Precision::Exact {
-        return Err(BuildError::Unsupported("GNOMON_PRECISION_EXACT"));
-    }
     let own_pool;
     let pool = match options.thread_count {
         0 => threads::shared_pool(),

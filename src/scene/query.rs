@@ -8,7 +8,7 @@ use crate::accel::{
     Accel, AnyAccel, AnyHit, AnySurface, Closest, ClosestHit, Counted, LeafForm, Precision, Primitive, Query,
     RayCounts, Surface, WideBvh,
 };
-use crate::geometry::{Accurate, Fast, Hit, INVALID_ID, PrecisionMode, Ray, Sphere, Triangle};
+use crate::geometry::{Accurate, Exact, Fast, Hit, INVALID_ID, PrecisionMode, Ray, Sphere, Triangle};
 use crate::simd::DetectedIsa;
 
 /// Work that runs on whatever structure and precision a scene has.
@@ -108,8 +108,8 @@ impl Scene {
     fn dispatch_precision<K: Kernel, A: Accel + Sync>(&self, kernel: K, accel: &A) -> K::Output {
         match self.precision {
             Precision::Fast => kernel.run::<A, Fast>(accel),
-            // An exact scene is not built yet.
-            Precision::Accurate | Precision::Exact => kernel.run::<A, Accurate>(accel),
+            Precision::Accurate => kernel.run::<A, Accurate>(accel),
+            Precision::Exact => kernel.run::<A, Exact>(accel),
         }
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{Content, Scene, SurfaceError};
 use crate::accel::{AnyPrimitive, OutOfMemory, Precision};
-use crate::geometry::{Accurate, Fast, Hit, HitPoint, Ray};
+use crate::geometry::{Accurate, Exact, Fast, Hit, HitPoint, Ray};
 
 /// A hit's point, a bound on its error, and what it takes to leave the surface there.
 #[derive(Clone, Copy, Debug)]
@@ -45,8 +45,11 @@ impl SurfacePoint {
             (AnyPrimitive::Triangle(triangle), Precision::Fast) => {
                 triangle.offset_origin::<Fast>(position, error, direction)
             }
-            (AnyPrimitive::Triangle(triangle), Precision::Accurate | Precision::Exact) => {
+            (AnyPrimitive::Triangle(triangle), Precision::Accurate) => {
                 triangle.offset_origin::<Accurate>(position, error, direction)
+            }
+            (AnyPrimitive::Triangle(triangle), Precision::Exact) => {
+                triangle.offset_origin::<Exact>(position, error, direction)
             }
         };
         origin.ok_or(SurfaceError::NoOrigin)
@@ -104,7 +107,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::geometry::rational::{Exact, along, cross, dot, exact, magnitude, minus, zero};
+    use crate::geometry::rational::{Vector, along, cross, dot, exact, magnitude, minus, zero};
     use crate::geometry::{Interval, PrecisionMode, Sphere, SphereRay, Triangle, TriangleRay};
 
     const AHEAD: Interval = Interval { t_min: 0.0, t_max: f32::INFINITY };
@@ -160,8 +163,8 @@ mod tests {
     }
 
     struct Plane {
-        point: Exact,
-        normal: Exact,
+        point: Vector,
+        normal: Vector,
     }
 
     impl Plane {
@@ -175,7 +178,7 @@ mod tests {
         }
 
         /// Where the ray meets it, if that is in the triangle.
-        fn meets(&self, ray: &Ray, triangle: &Triangle) -> Option<Exact> {
+        fn meets(&self, ray: &Ray, triangle: &Triangle) -> Option<Vector> {
             let (origin, direction) = (exact(ray.origin.to_array()), exact(ray.direction.to_array()));
             let per_t = dot(&self.normal, &direction);
             if per_t == zero() {
@@ -185,7 +188,7 @@ mod tests {
             let met = along(&origin, &t, &direction);
             let [a, b, c] = triangle.vertices().map(exact);
             let is_left =
-                |from: &Exact, to: &Exact| dot(&cross(&minus(to, from), &minus(&met, from)), &self.normal) >= zero();
+                |from: &Vector, to: &Vector| dot(&cross(&minus(to, from), &minus(&met, from)), &self.normal) >= zero();
             (is_left(&a, &b) && is_left(&b, &c) && is_left(&c, &a)).then_some(met)
         }
     }
@@ -251,13 +254,14 @@ mod tests {
             prop_assume!(direction.is_finite() && direction != Vec3::ZERO);
             let plane = Plane::of(&triangle);
             let side = if dot(&plane.normal, &exact(direction.to_array())) < zero() { -1.0 } else { 1.0 };
-            for precision in [Precision::Fast, Precision::Accurate] {
+            for precision in [Precision::Fast, Precision::Accurate, Precision::Exact] {
                 let origin = SurfacePoint { precision, ..point }.offset_origin(direction).expect("there is one");
                 prop_assert!(plane.height(origin) * rational(side) > zero(), "{origin} is not off {triangle:?}");
                 let next = Ray { origin, t_min: 0.0, direction, t_max: f32::INFINITY };
                 match precision {
                     Precision::Fast => prop_assert!(misses::<Fast>(&triangle, &next)),
-                    _ => prop_assert!(misses::<Accurate>(&triangle, &next)),
+                    Precision::Accurate => prop_assert!(misses::<Accurate>(&triangle, &next)),
+                    Precision::Exact => prop_assert!(misses::<Exact>(&triangle, &next)),
                 }
             }
         }

@@ -172,6 +172,11 @@ pub(crate) trait Simd: Copy + Send + Sync {
     /// Of the bits.
     fn or(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
 
+    #[inline(always)]
+    fn abs(self, a: Self::F32x8) -> Self::F32x8 {
+        self.and(a, self.splat(f32::from_bits(i32::MAX as u32)))
+    }
+
     /// One value in all lanes.
     fn splat3(self, value: f32) -> Self::F64x3;
     fn widen3(self, values: [f32; 3]) -> Self::F64x3;

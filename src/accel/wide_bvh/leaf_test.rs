@@ -3,20 +3,20 @@
 //! `f32` refuses most triangles, by their edge functions and by bounds of `t` that need no division: the least and the
 //! greatest `z / dz` of the vertices. What is left is evaluated at once.
 
-use glam::Vec4;
+use glam::{Vec4, Vec4Swizzles};
 
 use super::WideBvh;
 use super::leaves::{LeafForm, LeafRows, LeafTriangles, TriangleForm};
 use super::node::Child;
 use crate::accel::Primitive;
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{Interval, PrecisionMode, Ray, TriangleHit, TriangleRay};
+use crate::geometry::{Interval, PrecisionMode, Ray, TriangleHit, TriangleRay, edge_slack, least_doubt};
 use crate::math::UNIT_ROUNDOFF;
 use crate::simd::Simd;
 
 /// A ray made ready for what leaves of a form hold.
 pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
-    fn new(bvh: &'a WideBvh<F>, ray: &Ray) -> Self;
+    fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray) -> Self;
 
     /// For directions of unusual length.
     fn check_range(&mut self);
@@ -44,10 +44,12 @@ pub(crate) struct TriangleTest<'a, F> {
     bvh: &'a WideBvh<F>,
     ray: TriangleRay,
     t_min: f32,
+    /// See [`edge_slack`] and [`least_doubt`]; for exact decisions alone.
+    edge_slack: [f32; 2],
 }
 
 /// A coordinate of the three vertices of eight triangles.
-type Corners<S> = [<S as Simd>::F32x8; 3];
+pub(super) type Corners<S> = [<S as Simd>::F32x8; 3];
 
 /// The best hit so far.
 #[derive(Clone, Copy)]
@@ -95,10 +97,11 @@ impl Candidates {
 }
 
 impl Best {
-    /// Whatever lies in the interval is better, a hit at `t_max` itself too.
+    /// Whatever lies in the interval is better, a hit at `t_max` itself too; a `t` beyond all floats is no hit.
     #[inline(always)]
     pub(super) fn none(ray: &Ray) -> Self {
-        Self { hit: Vec4::new(ray.t_max, 0.0, 0.0, 0.0), place: Place { leaf: Child::NONE, lane: 0 } }
+        let t_max = if ray.t_max < f32::MAX { ray.t_max } else { f32::MAX };
+        Self { hit: Vec4::new(t_max, 0.0, 0.0, 0.0), place: Place { leaf: Child::NONE, lane: 0 } }
     }
 
     /// Beyond this nothing is better.
@@ -133,8 +136,9 @@ impl Best {
 
 impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     #[inline(always)]
-    fn new(bvh: &'a WideBvh<F>, ray: &Ray) -> Self {
-        Self { bvh, ray: TriangleRay::new(ray), t_min: ray.t_min }
+    fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray) -> Self {
+        let slack = if P::IS_EXACT { edge_slack(reach_from(&bvh.corners, ray)) } else { 0.0 };
+        Self { bvh, ray: TriangleRay::new(ray), t_min: ray.t_min, edge_slack: [slack, least_doubt(slack)] }
     }
 
     /// For directions so short that `1 / dz` overflows: its bounds of `t` then decide nothing, being NaN.
@@ -159,7 +163,7 @@ impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
         t_max: f32,
         best: &mut Best,
     ) -> bool {
-        let candidates = self.candidates(simd, child, t_min, t_max);
+        let candidates = self.candidates::<P, S>(simd, child, t_min, t_max);
         (Q::FIRST_HIT_ENDS && candidates.are_hit()) || self.choose::<Q, P, S>(simd, child, candidates, best)
     }
 
@@ -204,14 +208,15 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
     /// Those that the line of the ray may hit, if any, somewhere between `t_min` and `t_max`.
     ///
     /// A triangle is refused where the signs of its edge functions differ: a difference of rounded products is zero or
-    /// has the right sign. Where they agree and none is zero it is taken for sure.
+    /// has the right sign. Where they agree and none is zero it is taken for sure. For exact decisions both take signs beyond doubt.
     ///
     /// A hit's `t` is an average of the vertices' `z / dz`. Those make three roundings; `t` itself rounds once, and may
     /// leave their range by less than 2^-30 of the largest (`evaluation.rs`). Twice that is allowed for, and underflow.
     ///
-    /// A NaN fails all comparisons: the triangle then is neither refused nor sure, nor surely inside.
+    /// A NaN fails all comparisons: the triangle then is neither refused nor sure, nor surely inside. One among the edge functions
+    /// is passed over by `min` and `max`; the others refuse all the same, and what is sure is looked at again.
     #[inline(always)]
-    fn candidates<S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
+    fn candidates<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
         let leaf = self.bvh.leaves.leaf(child.triangles());
         let rows = leaf.unpacked(simd);
         let ray = &self.ray;
@@ -227,11 +232,24 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         let zero = simd.splat(0.0);
         // A NaN may lose a sign here, which refuses less.
         let (least, most) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
-        let mut lanes = leaf.mask() & !(simd.less(least, zero) & simd.less(zero, most));
+        // Above zero where all have one sign, below where two differ.
+        let agreement = simd.max(least, simd.sub(zero, most));
+        let size = if P::IS_EXACT { size_across(simd, &x, &y) } else { zero };
+        let [slack, least_doubt] = self.edge_slack.map(|slack| simd.splat(slack));
+        let refused = if P::IS_EXACT {
+            simd.less(simd.mul_add(size, slack, simd.add(agreement, least_doubt)), zero)
+        } else {
+            simd.less(agreement, zero)
+        };
+        let mut lanes = leaf.mask() & !refused;
         if lanes == 0 {
             return Candidates { lanes, sure: 0, inside: 0 };
         }
-        let sure = simd.less(zero, least) | simd.less(most, zero);
+        let sure = if P::IS_EXACT {
+            simd.less(simd.mul_add(size, slack, least_doubt), agreement)
+        } else {
+            simd.less(zero, agreement)
+        };
         let per_z = simd.splat(ray.per_z[3]);
         let t = [simd.mul(z[0], per_z), simd.mul(z[1], per_z), simd.mul(z[2], per_z)];
         let (first, last) = (simd.min(t[0], simd.min(t[1], t[2])), simd.max(t[0], simd.max(t[1], t[2])));
@@ -240,11 +258,10 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         let (first, last) = (simd.sub(first, slack), simd.add(last, slack));
         let t_max = simd.splat(t_max);
         lanes &= !(simd.less(last, t_min) | simd.less(t_max, first));
-        // A hit has a finite t. Where edge functions overflow they may have made a NaN, which nothing above keeps.
-        let latest = simd.min(t_max, simd.splat(f32::MAX));
+        // Where edge functions overflow they may have made a NaN, which nothing above keeps.
         let overflow = simd.mul(simd.add(a, simd.add(b, c)), zero);
         let is_finite = simd.less_or_equal(overflow, zero);
-        let inside = is_finite & simd.less_or_equal(t_min, first) & simd.less_or_equal(last, latest);
+        let inside = is_finite & simd.less_or_equal(t_min, first) & simd.less_or_equal(last, t_max);
         Candidates { lanes, sure, inside }
     }
 
@@ -279,6 +296,21 @@ fn precedes<F: LeafForm, P: PrecisionMode>(
     b: Place,
 ) -> bool {
     b.leaf == Child::NONE || a.primitive(bvh).precedes::<P>(&b.primitive(bvh), ray)
+}
+
+/// The sum of the magnitudes of sheared coordinates: see [`edge_slack`].
+#[inline(always)]
+pub(super) fn size_across<S: Simd>(simd: S, x: &Corners<S>, y: &Corners<S>) -> S::F32x8 {
+    let (a, b) = (simd.add(simd.abs(x[0]), simd.abs(x[1])), simd.add(simd.abs(y[0]), simd.abs(y[1])));
+    simd.add(simd.add(a, b), simd.add(simd.abs(x[2]), simd.abs(y[2])))
+}
+
+/// The largest distance along an axis from the ray's origin to a corner of the scene.
+#[inline(always)]
+fn reach_from([lower, upper]: &[Vec4; 2], ray: &Ray) -> f32 {
+    let origin = ray.origin.extend(0.0);
+    let reach = (*upper - origin).max(origin - *lower);
+    reach.max(reach.yzzz()).max(reach.zzzz()).x
 }
 
 #[inline(always)]

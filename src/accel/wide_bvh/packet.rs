@@ -10,12 +10,13 @@ use arrayvec::ArrayVec;
 use glam::Vec3A;
 
 use super::WideBvh;
+use super::leaf_test::Corners;
 use super::leaves::{Leaf, LeafTriangles};
 use super::node::{Child, WideNode};
-use super::wavefront::{Corners, differ_in_sign, is_fit, shear, spans, weights};
+use super::wavefront::{Signs, is_fit, shear, spans, weights};
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, settled};
+use crate::geometry::{Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, settled};
 
 use crate::math::gamma;
 use crate::simd::{LANES, Simd, SimdKernel, prefetch};
@@ -138,6 +139,8 @@ struct Rays {
     farthest: Row,
     /// The best hit if it is not evaluated yet: lane and leaf.
     pending: [Option<(u32, Child)>; PACKET],
+    /// See [`edge_slack`]: of the ray that needs most; for exact decisions alone.
+    edge_slack: f32,
 }
 
 /// All rays as one, in the form `sign * plane`: for each axis the side of near planes, and intervals.
@@ -166,7 +169,7 @@ where
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { bvh, rays: sources, spread, places, answer, .. } = self;
         let mut best: [ClosestHit; PACKET] = [ClosestHit::none(&(&sources[0]).into()); PACKET];
-        let mut rays = Rays::new(bvh, sources, spread, &mut best);
+        let mut rays = Rays::new::<P, R>(bvh, sources, spread, &mut best);
         let beam = Beam::new(simd, bvh, spread, &rays);
         let mut t_max = rays.farthest_of_all(simd);
         let mut stack = Stack::new_const();
@@ -232,7 +235,7 @@ where
         }
         if !Q::FIRST_HIT_ENDS && P::HAS_LANES {
             for group in 0..GROUPS {
-                rays.settle_group(group, bvh, sources, &mut best);
+                rays.settle_group::<P, R>(group, bvh, sources, &mut best);
             }
         }
         for (index, place) in places.iter_mut().enumerate().take(PACKET) {
@@ -262,7 +265,12 @@ fn push(stack: &mut Stack, bottom: usize, pending: Pending) {
 
 impl Rays {
     #[inline(always)]
-    fn new<R>(bvh: &WideBvh, sources: &[R; PACKET], spread: &Spread, best: &mut [ClosestHit; PACKET]) -> Self
+    fn new<P: PrecisionMode, R>(
+        bvh: &WideBvh,
+        sources: &[R; PACKET],
+        spread: &Spread,
+        best: &mut [ClosestHit; PACKET],
+    ) -> Self
     where
         for<'r> &'r R: Into<Ray>,
     {
@@ -278,6 +286,7 @@ impl Rays {
             nearest: row,
             farthest: row,
             pending: [None; PACKET],
+            edge_slack: 0.0,
         };
         let (lower, upper) = (Vec3A::from(bvh.bounds.lower), Vec3A::from(bvh.bounds.upper));
         let [kx, ky, kz] = spread.axes;
@@ -287,6 +296,9 @@ impl Rays {
             let inverse = Vec3A::ONE / direction;
             // As `SlabRay::fused_offsets`, all axes at once.
             let reach = (upper - origin).max(origin - lower).max_element();
+            if P::IS_EXACT {
+                rays.edge_slack = rays.edge_slack.max(edge_slack(reach));
+            }
             let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
             let offset = origin * inverse;
             let slack = inverse.abs() * slack_distance + offset.abs() * gamma(4);
@@ -388,11 +400,12 @@ impl Rays {
             let y = shear(simd, from_origin(simd, leaf, ky, lane, origin[1]), shear_y, z);
             let sheared = [x, y, z];
             let weights = weights(simd, &sheared);
-            let candidates = active & !differ_in_sign(simd, &weights);
+            let signs = Signs::of::<P, S>(simd, &sheared, &weights, self.edge_slack);
+            let candidates = active & !signs.differ;
             if candidates == 0 {
                 continue;
             }
-            let spans = spans(simd, &sheared, &weights, inverse_depth);
+            let spans = spans(simd, &sheared, &weights, signs, inverse_depth);
             let mut left = candidates & spans.within(simd, t_min, Self::load(simd, &self.farthest, group));
             let (from, to) = (simd.store(spans.from), simd.store(spans.to));
             is_changed |= left != 0;
@@ -425,8 +438,13 @@ impl Rays {
 
     /// As [`Rays::settle`] for a group, as far as one evaluation is enough.
     #[inline(always)]
-    fn settle_group<R>(&mut self, group: usize, bvh: &WideBvh, sources: &[R; PACKET], best: &mut [ClosestHit; PACKET])
-    where
+    fn settle_group<P: PrecisionMode, R>(
+        &mut self,
+        group: usize,
+        bvh: &WideBvh,
+        sources: &[R; PACKET],
+        best: &mut [ClosestHit; PACKET],
+    ) where
         for<'r> &'r R: Into<Ray>,
     {
         let mut lanes = HitLanes::EMPTY;
@@ -438,7 +456,7 @@ impl Rays {
                 best[index].primitive = triangle;
             }
         }
-        let hits = lanes.evaluate();
+        let hits = lanes.evaluate::<P>();
         for of_group in 0..LANES {
             let index = (group * LANES + of_group) % PACKET;
             if self.pending[index].is_some()

@@ -134,7 +134,7 @@ impl SphereTest<'_> {
 
 impl<'a> LeafTest<'a, Spheres> for SphereTest<'a> {
     #[inline(always)]
-    fn new(bvh: &'a WideBvh<Spheres>, ray: &Ray) -> Self {
+    fn new<P: PrecisionMode>(bvh: &'a WideBvh<Spheres>, ray: &Ray) -> Self {
         let per_square = ray.direction / ray.direction.length_squared();
         Self {
             bvh,

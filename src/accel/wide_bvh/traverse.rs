@@ -91,7 +91,7 @@ where
         match ObliqueSlabs::new(&ray, &bvh.corners) {
             Some(slabs) => {
                 let mut stack = Aligned(Stack::new_const());
-                let mut walk = Walk::<Q, F>::new(bvh, &ray, &mut stack.0);
+                let mut walk = Walk::<Q, F>::new::<P>(bvh, &ray, &mut stack.0);
                 let found = walk.run::<P, S, _>(simd, &Oblique::new(slabs));
                 then(found.map(|hit| hit.on_surface(&ray)), walk.tally)
             }
@@ -122,7 +122,7 @@ impl<Q: Query, P: PrecisionMode, F: LeafForm> SimdKernel for AlongPlanes<'_, Q, 
         }
         let mut stack = Aligned(Stack::new_const());
         let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
-        let mut walk = Walk::<Q, F>::new(bvh, &ray, &mut stack.0);
+        let mut walk = Walk::<Q, F>::new::<P>(bvh, &ray, &mut stack.0);
         walk.leaves.check_range();
         let found = walk.run::<P, S, _>(simd, &boxes);
         (found.map(|hit| hit.on_surface(&ray)), walk.tally)
@@ -140,9 +140,9 @@ struct Walk<'a, Q: Query, F: LeafForm> {
 
 impl<'a, Q: Query, F: LeafForm> Walk<'a, Q, F> {
     #[inline(always)]
-    fn new(bvh: &'a WideBvh<F>, ray: &Ray, stack: &'a mut Stack) -> Self {
+    fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray, stack: &'a mut Stack) -> Self {
         stack.push(Pending::new(0, bvh.root));
-        Self { bvh, stack, leaves: F::Test::new(bvh, ray), best: Best::none(ray), tally: Q::Tally::default() }
+        Self { bvh, stack, leaves: F::Test::new::<P>(bvh, ray), best: Best::none(ray), tally: Q::Tally::default() }
     }
 
     #[inline(always)]

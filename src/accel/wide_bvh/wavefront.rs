@@ -13,11 +13,14 @@ use std::time::Instant;
 use glam::Vec3A;
 
 use super::WideBvh;
+use super::leaf_test::{Corners, size_across};
 use super::leaves::{Leaf, LeafRows, LeafTriangles};
 use super::node::{Child, WideNode};
 use super::packet::{PACKET, Packet, Spread};
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, settled};
+use crate::geometry::{
+    Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, least_doubt, settled,
+};
 use crate::math::{UNIT_ROUNDOFF, gamma};
 use crate::simd::{LANES, Simd, SimdKernel};
 
@@ -190,7 +193,8 @@ struct LeafRay {
     farthest: f32,
     /// The best hit if it is not evaluated yet: lane and leaf.
     pending: Option<(u32, Child)>,
-    padding: u32,
+    /// See [`edge_slack`]; for exact decisions alone.
+    edge_slack: f32,
 }
 
 const _: () = assert!(size_of::<BoxRay>() == 64);
@@ -219,7 +223,7 @@ impl LeafRay {
         nearest: 0.0,
         farthest: 0.0,
         pending: None,
-        padding: 0,
+        edge_slack: 0.0,
     };
 }
 
@@ -425,7 +429,7 @@ where
             let Some((source, place)) = self.source.next() else { return false };
             let ray: Ray = source.into();
             if self.is_in_range && !self.source.are_coherent && is_fit(&ray) {
-                self.start(id, &ray, place);
+                self.start::<P>(id, &ray, place);
                 return true;
             }
             let answer = &self.answer;
@@ -434,7 +438,7 @@ where
     }
 
     #[inline(always)]
-    fn start(&mut self, id: usize, ray: &Ray, place: &'a mut T) {
+    fn start<P: PrecisionMode>(&mut self, id: usize, ray: &Ray, place: &'a mut T) {
         let triangle_ray = TriangleRay::new(ray);
         let [kx, ky, kz] = triangle_ray.axes;
         let origin = Vec3A::from(ray.origin);
@@ -467,7 +471,7 @@ where
             nearest: t_max,
             farthest: t_max,
             pending: None,
-            padding: 0,
+            edge_slack: if P::IS_EXACT { edge_slack(reach) } else { 0.0 },
         };
         let slot = &mut self.slots[id];
         slot.ray = triangle_ray;
@@ -535,9 +539,10 @@ where
             let ray = &self.leaves[id];
             let sheared = sheared(simd, ray, &leaf);
             let weights = weights(simd, &sheared);
-            let candidates = leaf.mask() & !differ_in_sign(simd, &weights);
+            let signs = Signs::of::<P, S>(simd, &sheared, &weights, ray.edge_slack);
+            let candidates = leaf.mask() & !signs.differ;
             if candidates != 0 {
-                let spans = spans(simd, &sheared, &weights, simd.splat(ray.inverse_depth));
+                let spans = spans(simd, &sheared, &weights, signs, simd.splat(ray.inverse_depth));
                 if self.keep_candidates::<Q, P, S>(simd, id, &leaf, candidates, &spans) {
                     // Nothing is left to do for it.
                     self.boxes[id].top = LANES as u32;
@@ -650,7 +655,7 @@ where
                 self.slots[id].best.primitive = triangle;
             }
         }
-        let hits = lanes.evaluate();
+        let hits = lanes.evaluate::<P>();
         for lane in 0..count {
             let id = list.id(first + lane);
             if let Some(hit) = settled(&hits, lane) {
@@ -720,9 +725,6 @@ fn slab<S: Simd>(simd: S, ray: &BoxRay, node: &WideNode, axis: usize) -> (S::F32
     (near, far)
 }
 
-/// A coordinate of the three vertices of eight triangles.
-pub(super) type Corners<S> = [<S as Simd>::F32x8; 3];
-
 /// The vertices of eight triangles, sheared so that the ray is the z axis.
 #[inline(always)]
 fn sheared<S: Simd>(simd: S, ray: &LeafRay, leaf: &Leaf<'_>) -> [Corners<S>; 3] {
@@ -740,11 +742,33 @@ pub(super) fn weights<S: Simd>(simd: S, [x, y, _]: &[Corners<S>; 3]) -> Corners<
     [edge(simd, x[2], y[1], y[2], x[1]), edge(simd, x[0], y[2], y[0], x[2]), edge(simd, x[1], y[0], y[1], x[0])]
 }
 
-#[inline(always)]
-pub(super) fn differ_in_sign<S: Simd>(simd: S, [a, b, c]: &Corners<S>) -> u32 {
-    let zero = simd.splat(0.0);
-    let (least, greatest) = (simd.min(*a, simd.min(*b, *c)), simd.max(*a, simd.max(*b, *c)));
-    simd.less(least, zero) & simd.less(zero, greatest)
+/// The triangles whose weights differ in sign, and those of which all have the same one; for exact decisions beyond doubt.
+#[derive(Clone, Copy)]
+pub(super) struct Signs {
+    pub(super) differ: u32,
+    agree: u32,
+}
+
+impl Signs {
+    /// See [`edge_slack`] for the slack.
+    #[inline(always)]
+    pub(super) fn of<P: PrecisionMode, S: Simd>(
+        simd: S,
+        [x, y, _]: &[Corners<S>; 3],
+        &[a, b, c]: &Corners<S>,
+        edge_slack: f32,
+    ) -> Self {
+        let zero = simd.splat(0.0);
+        let (least, greatest) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
+        // Above zero where all have one sign, below where two differ.
+        let agreement = simd.max(least, simd.sub(zero, greatest));
+        if !P::IS_EXACT {
+            return Self { differ: simd.less(agreement, zero), agree: simd.less(zero, agreement) };
+        }
+        let (slack, least) = (simd.splat(edge_slack), simd.splat(least_doubt(edge_slack)));
+        let doubt = simd.mul_add(size_across(simd, x, y), slack, least);
+        Self { differ: simd.less(simd.add(agreement, doubt), zero), agree: simd.less(doubt, agreement) }
+    }
 }
 
 /// What `f32` can tell of where a ray meets eight triangles.
@@ -780,17 +804,14 @@ pub(super) fn spans<S: Simd>(
     simd: S,
     &[x, y, z]: &[Corners<S>; 3],
     &[a, b, c]: &Corners<S>,
+    signs: Signs,
     inverse_depth: S::F32x8,
 ) -> Spans<S> {
     const LEAST_WEIGHT: f32 = 1.0 / (1u64 << 60) as f32;
     const LEAST_DEPTH: f32 = LEAST_WEIGHT / (1 << 20) as f32;
 
-    let zero = simd.splat(0.0);
-    let (least, greatest) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
-    let certain = simd.less(zero, least) | simd.less(greatest, zero);
-
     let (nearest, farthest) = (simd.min(z[0], simd.min(z[1], z[2])), simd.max(z[0], simd.max(z[1], z[2])));
-    let most = simd.max(abs(simd, nearest), abs(simd, farthest));
+    let most = simd.max(simd.abs(nearest), simd.abs(farthest));
     let (x, y) = (abs3(simd, x), abs3(simd, y));
     let sizes = [simd.add(x[0], y[0]), simd.add(x[1], y[1]), simd.add(x[2], y[2])];
     let size = simd.add(sizes[0], simd.add(sizes[1], sizes[2]));
@@ -804,19 +825,17 @@ pub(super) fn spans<S: Simd>(
     let inverse_sum = simd.div(simd.splat(1.0), simd.add(simd.add(a, b), c));
     let weighted = simd.add(simd.add(simd.mul(a, z[0]), simd.mul(b, z[1])), simd.mul(c, z[2]));
     let depth = simd.mul(weighted, inverse_sum);
-    let moved = simd.mul(simd.mul(weight_error, abs(simd, inverse_sum)), simd.sub(farthest, nearest));
+    let moved = simd.mul(simd.mul(weight_error, simd.abs(inverse_sum)), simd.sub(farthest, nearest));
     let depth_error = simd.add(simd.add(moved, simd.mul(unit(24.0), most)), simd.splat(LEAST_DEPTH));
 
     let (first, last) = (simd.mul(nearest, inverse_depth), simd.mul(farthest, inverse_depth));
-    let slack = simd.add(
-        simd.mul(simd.splat(gamma(8)), simd.max(abs(simd, first), abs(simd, last))),
-        simd.splat(f32::MIN_POSITIVE),
-    );
+    let slack = simd
+        .add(simd.mul(simd.splat(gamma(8)), simd.max(simd.abs(first), simd.abs(last))), simd.splat(f32::MIN_POSITIVE));
     let t = simd.mul(depth, inverse_depth);
-    let t_error = simd.mul(depth_error, abs(simd, inverse_depth));
+    let t_error = simd.mul(depth_error, simd.abs(inverse_depth));
     // A NaN, from weights that are all zero, leaves the vertices' bounds.
     Spans {
-        certain,
+        certain: signs.agree,
         from: simd.max(simd.sub(t, t_error), simd.sub(simd.min(first, last), slack)),
         to: simd.min(simd.add(t, t_error), simd.add(simd.max(first, last), slack)),
     }
@@ -824,12 +843,7 @@ pub(super) fn spans<S: Simd>(
 
 #[inline(always)]
 fn abs3<S: Simd>(simd: S, a: Corners<S>) -> Corners<S> {
-    [abs(simd, a[0]), abs(simd, a[1]), abs(simd, a[2])]
-}
-
-#[inline(always)]
-pub(super) fn abs<S: Simd>(simd: S, a: S::F32x8) -> S::F32x8 {
-    simd.and(a, simd.splat(f32::from_bits(i32::MAX as u32)))
+    [simd.abs(a[0]), simd.abs(a[1]), simd.abs(a[2])]
 }
 
 #[inline(always)]
