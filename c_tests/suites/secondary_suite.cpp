@@ -58,7 +58,8 @@ std::vector<Engine> engines() {
     for (const NamedValue& structure : structure_names)
         if (structure.value != GNOMON_STRUCTURE_AUTO) all.push_back({structure.value, GNOMON_PRECISION_ACCURATE, 0});
     all.push_back({GNOMON_STRUCTURE_WIDE_BVH, GNOMON_PRECISION_ACCURATE, 1});
-    all.push_back({GNOMON_STRUCTURE_WIDE_BVH, GNOMON_PRECISION_FAST, 0});
+    for (const std::uint32_t precision : {GNOMON_PRECISION_FAST, GNOMON_PRECISION_EXACT})
+        all.push_back({GNOMON_STRUCTURE_WIDE_BVH, precision, 0});
     return all;
 }
 
