@@ -68,9 +68,12 @@ test-slow: packages-test cargo ## Run the slow tests
 	cmake --build $(BUILD) --parallel $(JOBS)
 	$(ctest) --test-dir $(BUILD) --label-regex slow
 
-hard: packages-test cargo ## Aim 10^8 rays of each class at the seams of closed meshes: hours
+hard: OUT ?= $(BUILD)/hard
+hard: packages-test cargo ## The hard cases and populations in full, the bars, then 10^8 rays of each class at seams: hours; ARGS=, OUT=dir
 	cmake -S . -B $(BUILD)
-	cmake --build $(BUILD) --parallel $(JOBS) --target leak_suite
+	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-hard leak_suite
+	@mkdir -p $(OUT)
+	$(BUILD)/bin/gnomon-hard --json $(OUT)/hard.json --dump-failures $(OUT)/failures.txt $(ARGS)
 	GNOMON_RAYS=100000000 $(BUILD)/c_tests/suites/leak_suite
 
 format: cargo ## Format the Rust, C and C++ sources

@@ -73,7 +73,7 @@
 // The progress callback asked for an end.
 #define GNOMON_ERROR_CANCELLED 3u
 
-// This version has no such structure, quality or precision yet.
+// This version has no such structure, quality or precision. None is missing at present.
 #define GNOMON_ERROR_UNSUPPORTED 4u
 
 // A bug in gnomon, or a machine that could not start threads. Nothing was changed.
@@ -125,7 +125,10 @@
 // Decided as FAST; t within 0.51 ulp, u and v within 0.52 * 2^-24 of the exact values. For rendering; the default.
 #define GNOMON_PRECISION_ACCURATE 1u
 
-// Decided exactly: right for every ray. Not built yet.
+// Decided as if nothing was ever rounded, for every finite ray and triangle: which triangles are hit, and which first. t is the
+// float nearest to the exact value, u and v are as with ACCURATE; the interval is that of the rounded t, so that a ray that ends
+// at its hit's t hits again. For acoustics, particle transport and CAD: 4 to 6 % slower than ACCURATE. Hits at the same exact t, and
+// those of a sphere at the same rounded one, are told apart by their ids.
 #define GNOMON_PRECISION_EXACT 2u
 
 // The best instruction set that the CPU has.
@@ -426,10 +429,7 @@ void gnomon_scene_builder_free(struct GnomonSceneBuilder *builder);
 // Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that
 // is not finite (unless it is to be skipped; the message names the geometry, the triangle and the vertex), or such a
 // sphere;
-// `GNOMON_ERROR_UNSUPPORTED`; `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
-//
-// # Safety `builder` is null or from `gnomon_scene_builder_new`, and no other thread changes it; `options` is null
-// or filled in; `scene_out` is null or writable.
+// `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
 GnomonStatus gnomon_scene_build(const struct GnomonSceneBuilder *builder,
                                 const struct GnomonBuildOptions *options,
                                 struct GnomonScene **scene_out);
@@ -488,9 +488,6 @@ bool gnomon_occluded(const struct GnomonScene *scene,
 //
 // Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an array that is not aligned for floats, or a count
 // that no memory can hold; nothing is written then. Any number of threads may call this on one scene.
-//
-// # Safety `scene` is null or from `gnomon_scene_build`; `rays` and `hits_out` are null or have `count` elements;
-// `options` is null or filled in.
 GnomonStatus gnomon_intersect_n(const struct GnomonScene *scene,
                                 const struct GnomonRay *rays,
                                 size_t count,
@@ -501,9 +498,6 @@ GnomonStatus gnomon_intersect_n(const struct GnomonScene *scene,
 //
 // `occluded_out` gets one byte a ray, 1 where it hits anything and 0 where not; the two arrays must not overlap. The
 // rest is as for `gnomon_intersect_n`.
-//
-// # Safety `scene` is null or from `gnomon_scene_build`; `rays` and `occluded_out` are null or have `count`
-// elements; `options` is null or filled in.
 GnomonStatus gnomon_occluded_n(const struct GnomonScene *scene,
                                const struct GnomonRay *rays,
                                size_t count,

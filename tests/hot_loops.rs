@@ -66,7 +66,7 @@ const MAY_BE_CALLED: [&str; 13] = [
     ROOTS,
     "6settle",
     "3hit",
-    "13has_lower_ids",
+    "8precedes",
     "11certain_hit28_$u7b$$u7b$closure",
     "10hit_slowly",
     "7SlabRay3new",

@@ -325,11 +325,3 @@ TEST_CASE("arrays_misaligned_or_larger_than_memory_are_named") {
     CHECK(gnomon_intersect_n(scene.get(), rays, SIZE_MAX, &hit, nullptr) == GNOMON_ERROR_INVALID_ARGUMENT);
     check_error_names({"rays", std::to_string(SIZE_MAX)});
 }
-
-TEST_CASE("what_is_not_built_yet_is_unsupported_by_name") {
-    for (const Unbuilt& unbuilt : kUnbuilt) {
-        GnomonBuildOptions options = default_build_options();
-        options.*unbuilt.field = unbuilt.value;
-        build_fails(options, GNOMON_ERROR_UNSUPPORTED, {unbuilt.name});
-    }
-}

@@ -19,9 +19,7 @@ const std::vector<Named> kQualities{
 const std::vector<Named> kPrecisions{
     {"fast", GNOMON_PRECISION_FAST},
     {"accurate", GNOMON_PRECISION_ACCURATE},
-};
-const std::vector<Unbuilt> kUnbuilt{
-    {"GNOMON_PRECISION_EXACT", &GnomonBuildOptions::precision, GNOMON_PRECISION_EXACT},
+    {"exact", GNOMON_PRECISION_EXACT},
 };
 const std::vector<Named> kIsas{
     {"auto", GNOMON_ISA_AUTO}, {"scalar", GNOMON_ISA_SCALAR}, {"sse42", GNOMON_ISA_SSE42},

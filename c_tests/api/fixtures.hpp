@@ -62,14 +62,6 @@ extern const std::vector<Named> kQualities;
 extern const std::vector<Named> kPrecisions;
 extern const std::vector<Named> kIsas;
 
-/// A value of a build option that this version answers UNSUPPORTED to, and how the message names it.
-struct Unbuilt {
-    std::string name;
-    std::uint32_t GnomonBuildOptions::*field;
-    std::uint32_t value;
-};
-extern const std::vector<Unbuilt> kUnbuilt;
-
 /// Build options for each structure, the wide BVH compact too, quality, precision and ISA cap, with a name for the failure
 /// message.
 struct Configuration {

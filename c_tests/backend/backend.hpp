@@ -72,6 +72,10 @@ std::unique_ptr<Backend> make_gnomon(const Scene& scene, const GnomonBuildOption
 /// Embree reads the scene's indices in place: the scene must outlive the backend.
 std::unique_ptr<Backend> make_embree(const Scene& scene, bool robust, std::uint32_t quality, std::uint32_t threads);
 
+/// Whether Embree can be asked: all coordinates finite and within its limit, and t_min >= 0. False without Embree.
+bool embree_takes(const GnomonRay& ray);
+bool embree_takes(const Scene& scene);
+
 /// "3.13.5", or "" without Embree.
 std::string embree_version();
 

@@ -32,17 +32,6 @@ using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScen
 /// Embree's FLT_LARGE: beyond it the assertions of Debian's build end the process.
 constexpr float largest_coordinate = 1.844e18f;
 
-/// Embree's assertions also refuse NaN and t_min < 0; gnomon's contract makes a zero direction and an empty interval misses.
-bool askable(const GnomonRay& ray) {
-    bool directed = false;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(std::abs(ray.origin[axis]) <= largest_coordinate) || !(std::abs(ray.direction[axis]) <= largest_coordinate))
-            return false;
-        directed |= ray.direction[axis] != 0;
-    }
-    return directed && ray.t_min >= 0 && ray.t_min <= ray.t_max;
-}
-
 /// The mesh's vertices with the twelve further bytes that Embree reads at the last one.
 std::vector<float> padded(const std::vector<float>& positions) {
     std::vector<float> copy(positions.size() + 3, 0.0f);
@@ -88,7 +77,7 @@ public:
     void prepare(std::span<const GnomonRay> rays) override {
         rays_.assign(rays.begin(), rays.end());
         for (GnomonRay& ray : rays_) {
-            if (!askable(ray)) ray = idle_ray();
+            if (!embree_takes(ray)) ray = idle_ray();
         }
         fastest_intersect_ = fastest_occluded_ = nullptr;
     }
@@ -170,6 +159,23 @@ private:
 
 std::unique_ptr<Backend> make_embree(const Scene& scene, bool robust, std::uint32_t quality, std::uint32_t threads) {
     return std::make_unique<EmbreeBackend>(scene, robust, quality, threads);
+}
+
+// Embree's assertions also refuse NaN and t_min < 0; gnomon's contract makes a zero direction and an empty interval misses.
+bool embree_takes(const GnomonRay& ray) {
+    bool directed = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(std::abs(ray.origin[axis]) <= largest_coordinate) || !(std::abs(ray.direction[axis]) <= largest_coordinate))
+            return false;
+        directed |= ray.direction[axis] != 0;
+    }
+    return directed && ray.t_min >= 0 && ray.t_min <= ray.t_max;
+}
+
+bool embree_takes(const Scene& scene) {
+    return std::ranges::all_of(scene.meshes, [](const Mesh& mesh) {
+        return std::ranges::all_of(mesh.positions, [](float x) { return std::abs(x) <= largest_coordinate; });
+    });
 }
 
 std::string embree_version() { return RTC_VERSION_STRING; }

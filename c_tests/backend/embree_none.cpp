@@ -7,6 +7,9 @@ namespace harness {
 
 std::unique_ptr<Backend> make_embree(const Scene&, bool, std::uint32_t, std::uint32_t) { return nullptr; }
 
+bool embree_takes(const GnomonRay&) { return false; }
+bool embree_takes(const Scene&) { return false; }
+
 std::string embree_version() { return ""; }
 
 }  // namespace harness

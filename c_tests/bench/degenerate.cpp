@@ -4,7 +4,7 @@
 
 #include "backend/trace_loop.hpp"
 #include "bench/contenders.hpp"
-#include "bench/degenerate_scenes.hpp"
+#include "rays/degenerate_scenes.hpp"
 
 namespace harness {
 namespace {

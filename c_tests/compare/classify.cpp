@@ -1,9 +1,7 @@
 #include "compare/classify.hpp"
 
-#include <atomic>
-#include <thread>
-
 #include "compare/describe.hpp"
+#include "harness/parallel_for.hpp"
 
 namespace harness {
 namespace {
@@ -27,18 +25,6 @@ Answers answers_of(Backend& backend, const std::vector<GnomonRay>& rays, bool oc
     return answers;
 }
 
-/// work(i) for all i below count, on all cores.
-template <class Work>
-void parallel_for(std::size_t count, Work work) {
-    std::atomic<std::size_t> next{0};
-    std::vector<std::jthread> workers;
-    for (unsigned worker = 0; worker < std::max(1u, std::thread::hardware_concurrency()); ++worker) {
-        workers.emplace_back([&] {
-            for (std::size_t i = next++; i < count; i = next++) work(i);
-        });
-    }
-}
-
 std::vector<Verdict> judge_all(const Oracle& oracle, const std::vector<GnomonRay>& rays, const Answers& answers,
                                Contract contract, Progress& progress) {
     std::vector<Verdict> verdicts(rays.size());
@@ -53,6 +39,15 @@ std::vector<Verdict> judge_all(const Oracle& oracle, const std::vector<GnomonRay
 Quantiles quantiles(const std::vector<double>& values) {
     return {quantile(values, 0.5), quantile(values, 0.99), quantile(values, 1)};
 }
+
+std::string fault_text(const Engine& engine, const RaySet& set, const GnomonRay& ray, const std::string& answer,
+                       const Verdict& verdict, const Oracle& oracle, const std::string& scene_spec) {
+    return scene_spec + ", " + set.kind + ", " + engine.label() + ": " + verdict_text(verdict) + "\n  ray     " + ray_text(ray) +
+           "\n  gnomon  " + answer + "\n  exact   " + truth_text(oracle, ray) + "\n  replay  " +
+           replay_command(engine.report, scene_spec, ray) + "\n";
+}
+
+}  // namespace
 
 Errors count_errors(const BuildReport& report, const std::vector<Verdict>& verdicts) {
     Errors errors{};
@@ -76,15 +71,6 @@ std::string replay_command(const BuildReport& report, const std::string& scene_s
            " --quality " + report.quality + " --isa " + report.isa + (report.compact ? " --compact" : "") +
            " --replay=" + ray_text(ray);
 }
-
-std::string fault_text(const Engine& engine, const RaySet& set, const GnomonRay& ray, const std::string& answer,
-                       const Verdict& verdict, const Oracle& oracle, const std::string& scene_spec) {
-    return scene_spec + ", " + set.kind + ", " + engine.label() + ": " + verdict_text(verdict) + "\n  ray     " + ray_text(ray) +
-           "\n  gnomon  " + answer + "\n  exact   " + truth_text(oracle, ray) + "\n  replay  " +
-           replay_command(engine.report, scene_spec, ray) + "\n";
-}
-
-}  // namespace
 
 Contract contract_of(const BuildReport& report) {
     if (report.engine != "gnomon") return Contract::none;

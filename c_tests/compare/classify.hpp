@@ -21,6 +21,12 @@ Contract contract_of(const BuildReport& report);
 /// while its f32 t, u, v, and so which of two near surfaces comes first, are promised nothing.
 bool is_fault(const BuildReport& report, const Verdict& verdict);
 
+/// The verdicts' sums and quantiles; without the fields that say where the answers are from.
+Errors count_errors(const BuildReport& report, const std::vector<Verdict>& verdicts);
+
+/// The command that traces one ray of a scene file or generator once more.
+std::string replay_command(const BuildReport& report, const std::string& scene_spec, const GnomonRay& ray);
+
 /// One Errors an engine, in the first call form asked for. Each fault of gnomon's adds a paragraph to `faults` that ends with the
 /// command that replays it.
 std::vector<Errors> classify(std::vector<Engine>& engines, const RaySet& set, const Oracle& oracle, const std::string& scene_spec,

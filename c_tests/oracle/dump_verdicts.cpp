@@ -6,8 +6,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "hard/populations.hpp"
 #include "harness/rng.hpp"
 #include "oracle/oracle.hpp"
+#include "rays/aim.hpp"
 #include "scene/load.hpp"
 
 using namespace harness;
@@ -73,16 +75,9 @@ GnomonRay ray_through(const Vec3f& origin, const Vec3f& target) {
             infinity};
 }
 
-Vec3f weighted(const std::array<Vec3f, 3>& triangle, double u, double v) {
-    Vec3f point;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        point[axis] = static_cast<float>((1 - u - v) * triangle[0][axis] + u * triangle[1][axis] + v * triangle[2][axis]);
-    return point;
-}
-
 GnomonRay at_interior(const std::array<Vec3f, 3>& triangle, const Vec3f& point, Rng& rng) {
     const double u = rng.uniform();
-    GnomonRay ray = ray_through(point, weighted(triangle, u, (1 - u) * rng.uniform()));
+    GnomonRay ray = ray_through(point, point_of(triangle, u, (1 - u) * rng.uniform()));
     ray.t_min = 0;
     ray.t_max = 1.5f;
     return ray;
@@ -93,12 +88,12 @@ GnomonRay at_vertex(const std::array<Vec3f, 3>& triangle, const Vec3f& point, Rn
 }
 
 GnomonRay at_edge(const std::array<Vec3f, 3>& triangle, const Vec3f& point, Rng& rng) {
-    return ray_through(point, weighted(triangle, rng.uniform(), 0));
+    return ray_through(point, point_of(triangle, rng.uniform(), 0));
 }
 
 /// Within rounding of the triangle's plane; in it where that is a coordinate plane.
 GnomonRay in_plane(const std::array<Vec3f, 3>& triangle, const Vec3f&, Rng& rng) {
-    return ray_through(weighted(triangle, 3 + rng.uniform(), rng.uniform(-2, 2)), weighted(triangle, rng.uniform(), 0));
+    return ray_through(point_of(triangle, 3 + rng.uniform(), rng.uniform(-2, 2)), point_of(triangle, rng.uniform(), 0));
 }
 
 GnomonRay grazing(const std::array<Vec3f, 3>& triangle, const Vec3f& point, Rng& rng) {
@@ -151,6 +146,16 @@ json scene_findings(const Scene& scene) {
     return {{"name", scene.name}, {"triangles", triangles_of(scene)}, {"rays", rays}};
 }
 
+json population_findings(const Population& population) {
+    constexpr std::size_t rays_a_population = 8;
+    Rng rng(1);
+    const Trial trial = population.make(rays_a_population, rng);
+    const Oracle oracle(trial.scene);
+    json rays = json::array();
+    for (const GnomonRay& ray : trial.rays) rays.push_back(findings(oracle, ray));
+    return {{"name", population.name}, {"triangles", triangles_of(trial.scene)}, {"rays", rays}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -161,6 +166,7 @@ int main(int argc, char** argv) {
     json scenes = json::array();
     for (const char* name : {"soup", "needles", "icosphere", "cube_grid", "height_field", "shells", "identical"})
         scenes.push_back(scene_findings(generate_scene(name, std::string_view(name) == "identical" ? 10 : 200)));
+    for (const Population& population : populations()) scenes.push_back(population_findings(population));
     std::ofstream file(argv[1]);
     file << json{{"scenes", scenes}} << '\n';
     if (!file.flush()) {

@@ -10,9 +10,6 @@
 namespace harness {
 namespace {
 
-// accuracy.md, ACCURATE and EXACT.
-constexpr double uv_error_promised = 0.52;  // in units of 2^-24
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool is_hit(const GnomonHit& answer) { return answer.geometry_id != GNOMON_INVALID_ID; }

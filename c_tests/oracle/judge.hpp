@@ -13,6 +13,9 @@ namespace harness {
 /// How far t may be off at most, in ulps: accuracy.md, ACCURATE and EXACT.
 constexpr double t_ulps_promised = 0.51;
 
+/// The same for u and v, in units of 2^-24.
+constexpr double uv_error_promised = 0.52;
+
 /// Whether a candidate is a true hit in the closed interval of the ray.
 bool counts(const GnomonRay& ray, const Candidate& candidate);
 

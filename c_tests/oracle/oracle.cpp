@@ -113,7 +113,11 @@ std::vector<Candidate> Oracle::hits(const GnomonRay& ray) const {
 }
 
 Verdict Oracle::judge(const GnomonRay& ray, const GnomonHit& answer, Contract contract) const {
-    const std::vector<Candidate> found = candidates(ray);
+    return judge(ray, answer, candidates(ray), contract);
+}
+
+Verdict Oracle::judge(const GnomonRay& ray, const GnomonHit& answer, const std::vector<Candidate>& found,
+                      Contract contract) const {
     const auto reported = std::find_if(found.begin(), found.end(), [&](const Candidate& candidate) {
         return candidate.geometry_id == answer.geometry_id && candidate.primitive_id == answer.primitive_id;
     });

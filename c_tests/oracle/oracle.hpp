@@ -59,6 +59,9 @@ public:
     /// Judges a closest-hit answer.
     Verdict judge(const GnomonRay& ray, const GnomonHit& answer, Contract contract) const;
 
+    /// The same with the ray's candidates(), which then are found once for many answers.
+    Verdict judge(const GnomonRay& ray, const GnomonHit& answer, const std::vector<Candidate>& found, Contract contract) const;
+
     /// Judges an any-hit answer: missed, false_hit and outside_contract are filled.
     Verdict judge_occluded(const GnomonRay& ray, bool answer, Contract contract) const;
 

@@ -107,8 +107,6 @@ Vec3d random_point(const Bounds& bounds, Rng& rng) {
     return point;
 }
 
-Vec3f to_float(const Vec3d& a) { return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])}; }
-
 }  // namespace
 
 RaySet primary_rays(const Camera& camera, std::size_t count) {

@@ -19,5 +19,6 @@ inline double length(const Vec3d& a) { return std::hypot(a[0], a[1], a[2]); }
 inline Vec3d normalized(const Vec3d& a) { return (1 / length(a)) * a; }
 inline Vec3d to_double(const Vec3f& a) { return {a[0], a[1], a[2]}; }
 inline Vec3d to_double(const float (&a)[3]) { return {a[0], a[1], a[2]}; }
+inline Vec3f to_float(const Vec3d& a) { return {float(a[0]), float(a[1]), float(a[2])}; }
 
 }  // namespace harness

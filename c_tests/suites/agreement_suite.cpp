@@ -3,79 +3,26 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "backend/backend.hpp"
 #include "harness/ray_count.hpp"
 #include "harness/rng.hpp"
+#include "rays/aim.hpp"
 #include "rays/rays.hpp"
-#include "rays/vector.hpp"
 #include "scene/load.hpp"
 
 using namespace harness;
 
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Of more triangles a BSP tree takes too long.
 constexpr std::size_t most_for_bsp_tree = 30'000;
-/// A cell wall or a first split plane is at a multiple of this share of the scene's box.
-constexpr int walls = 16;
-
-/// Towards vertices, points of edges and insides, from anywhere around; towards and along what divides the scene's box evenly.
-std::vector<GnomonRay> aimed_rays(const Scene& scene, std::size_t count, Rng& rng) {
-    const Bounds box = scene.bounds();
-    const auto anywhere = [&](double margin) {
-        Vec3d point;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double reach = margin * (box.upper[axis] - box.lower[axis]);
-            point[axis] = rng.uniform(box.lower[axis] - reach, box.upper[axis] + reach);
-        }
-        return point;
-    };
-    const auto on_wall = [&] {
-        Vec3d point;
-        for (int axis = 0; axis < 3; ++axis)
-            point[axis] = box.lower[axis] + (box.upper[axis] - box.lower[axis]) * double(rng.below(walls + 1)) / walls;
-        return point;
-    };
-    const auto on_triangle = [&](std::size_t kind) {
-        const Mesh* mesh = nullptr;
-        do mesh = &scene.meshes[rng.below(scene.meshes.size())];
-        while (mesh->indices.empty());
-        const std::size_t triangle = rng.below(mesh->triangle_count());
-        const auto vertex = [&](std::size_t corner) {
-            const std::size_t at = 3 * mesh->indices[3 * triangle + corner];
-            return Vec3d{mesh->positions[at], mesh->positions[at + 1], mesh->positions[at + 2]};
-        };
-        if (kind == 0) return vertex(0);
-        const double share = rng.uniform(0, 1);
-        const Vec3d on_edge = (1 - share) * vertex(0) + share * vertex(1);
-        return kind == 1 ? on_edge : 0.5 * on_edge + 0.5 * vertex(2);
-    };
-    std::vector<GnomonRay> rays(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        Vec3d from = i % 7 == 6 ? on_wall() : anywhere(i % 5 == 4 ? 100.0 : 0.5);
-        const Vec3d to = i % 7 < 4 ? on_triangle(i % 7 % 3) : on_wall();
-        // Some in a plane across an axis, some along an axis.
-        for (std::size_t axis = 0; axis < i / 7 % 4 % 3; ++axis) from[axis] = to[axis];
-        GnomonRay& ray = rays[i];
-        ray.t_min = i % 11 == 10 ? -infinity : 0.0f;
-        ray.t_max = infinity;
-        for (int axis = 0; axis < 3; ++axis) {
-            ray.origin[axis] = static_cast<float>(from[axis]);
-            ray.direction[axis] = static_cast<float>(to[axis]) - ray.origin[axis];
-        }
-    }
-    return rays;
-}
 
 struct Variant {
     std::string name;

@@ -42,7 +42,7 @@ pub enum Precision {
     /// Decided as [`Precision::Fast`]; `t` within 0.51 ulp, `u` and `v` within 0.52 x 2^-24.
     #[default]
     Accurate,
-    /// Decided exactly.
+    /// Decided as if nothing was rounded; `t` rounded once, `u` and `v` as [`Precision::Accurate`].
     Exact,
 }
 

@@ -43,7 +43,10 @@ pub const GNOMON_QUALITY_HIGH: u32 = 2;
 pub const GNOMON_PRECISION_FAST: u32 = 0;
 /// Decided as FAST; t within 0.51 ulp, u and v within 0.52 * 2^-24 of the exact values. For rendering; the default.
 pub const GNOMON_PRECISION_ACCURATE: u32 = 1;
-/// Decided exactly: right for every ray. Not built yet.
+/// Decided as if nothing was ever rounded, for every finite ray and triangle: which triangles are hit, and which first. t is the
+/// float nearest to the exact value, u and v are as with ACCURATE; the interval is that of the rounded t, so that a ray that ends
+/// at its hit's t hits again. For acoustics, particle transport and CAD: 4 to 6 % slower than ACCURATE. Hits at the same exact t, and
+/// those of a sphere at the same rounded one, are told apart by their ids.
 pub const GNOMON_PRECISION_EXACT: u32 = 2;
 
 /// The best instruction set that the CPU has.

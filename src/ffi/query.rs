@@ -95,7 +95,8 @@ pub unsafe extern "C-unwind" fn gnomon_occluded(scene: *const GnomonScene, ray: 
 /// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an array that is not aligned for floats, or a count
 /// that no memory can hold; nothing is written then. Any number of threads may call this on one scene.
 ///
-/// # Safety `scene` is null or from `gnomon_scene_build`; `rays` and `hits_out` are null or have `count` elements;
+/// # Safety
+/// `scene` is null or from `gnomon_scene_build`; `rays` and `hits_out` are null or have `count` elements;
 /// `options` is null or filled in.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn gnomon_intersect_n(
@@ -124,7 +125,8 @@ pub unsafe extern "C-unwind" fn gnomon_intersect_n(
 /// `occluded_out` gets one byte a ray, 1 where it hits anything and 0 where not; the two arrays must not overlap. The
 /// rest is as for `gnomon_intersect_n`.
 ///
-/// # Safety `scene` is null or from `gnomon_scene_build`; `rays` and `occluded_out` are null or have `count`
+/// # Safety
+/// `scene` is null or from `gnomon_scene_build`; `rays` and `occluded_out` are null or have `count`
 /// elements; `options` is null or filled in.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn gnomon_occluded_n(

@@ -20,9 +20,10 @@ pub struct GnomonScene(pub(super) Scene);
 /// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, an unknown number in the options, or a triangle that
 /// is not finite (unless it is to be skipped; the message names the geometry, the triangle and the vertex), or such a
 /// sphere;
-/// `GNOMON_ERROR_UNSUPPORTED`; `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
+/// `GNOMON_ERROR_OUT_OF_MEMORY`; `GNOMON_ERROR_CANCELLED`; `GNOMON_ERROR_INTERNAL`.
 ///
-/// # Safety `builder` is null or from `gnomon_scene_builder_new`, and no other thread changes it; `options` is null
+/// # Safety
+/// `builder` is null or from `gnomon_scene_builder_new`, and no other thread changes it; `options` is null
 /// or filled in; `scene_out` is null or writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn gnomon_scene_build(

@@ -20,7 +20,7 @@ pub const GNOMON_ERROR_INVALID_ARGUMENT: u32 = 1;
 pub const GNOMON_ERROR_OUT_OF_MEMORY: u32 = 2;
 /// The progress callback asked for an end.
 pub const GNOMON_ERROR_CANCELLED: u32 = 3;
-/// This version has no such structure, quality or precision yet.
+/// This version has no such structure, quality or precision. None is missing at present.
 pub const GNOMON_ERROR_UNSUPPORTED: u32 = 4;
 /// A bug in gnomon, or a machine that could not start threads. Nothing was changed.
 pub const GNOMON_ERROR_INTERNAL: u32 = 5;
@@ -47,7 +47,6 @@ impl From<BuildError> for Failure {
             | BuildError::TooManyInScene { .. }
             | BuildError::NotFinite { .. }
             | BuildError::InvalidSphere { .. } => GNOMON_ERROR_INVALID_ARGUMENT,
-            BuildError::Unsupported(_) => GNOMON_ERROR_UNSUPPORTED,
             BuildError::Cancelled => GNOMON_ERROR_CANCELLED,
             BuildError::OverMemoryLimit { .. } | BuildError::OutOfMemory { .. } => GNOMON_ERROR_OUT_OF_MEMORY,
             BuildError::Threads(_) | BuildError::Internal(_) => GNOMON_ERROR_INTERNAL,

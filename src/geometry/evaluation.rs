@@ -64,12 +64,13 @@ pub(super) const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 31) as f64;
 pub(super) const LEAST_NORMAL: f64 = 1.0 / (1u128 << 70) as f64;
 
 impl Evaluation {
-    /// As [`Evaluation::of`] in `f64`, for rays that pass well inside the triangle, as nearly all do; `None` for others.
+    /// As [`Evaluation::of`] in `f64`, for rays that pass well inside the triangle, as nearly all do; `None` for others, but
+    /// for those that pass well outside where that is asked for: for [exact](PrecisionMode::IS_EXACT) hits.
     ///
     /// With coarser bounds: `s` is the sum over all three vertices, and `m |dz| <= s + |dz| max |az|`, because
     /// `ax dz = x + dx az` and `|dx| <= |dz|`.
     ///
-    /// For [exact](PrecisionMode::IS_EXACT) hits `None` too where the error of `t` leaves open to which float it rounds, and where a number read as zero for
+    /// For these also `None` where the error of `t` leaves open to which float it rounds, and where a number read as zero for
     /// being denormal would count: of coordinates that are off by `n = 2^-126` so, `x` is off by `4 n |dz| + 2 n m` at the most,
     /// less than 2^-49 of `s + |dz| max |az|` as long as `|dz|` and `max |az|` are 2^-70 or more.
     #[inline(always)]
@@ -97,14 +98,15 @@ impl Evaluation {
         let [a, b, c] = simd.values3(simd.add3(simd.abs3(x), simd.abs3(y)));
         let size = a + b + c;
         let [a, b, c] = simd.values3(simd.abs3(az));
-        let depth = greater(greater(a, b), c);
+        let depth = greatest3(a, b, c);
         let dz = f64::from(ray.direction[kz & 3]);
         let reach = 16.0 * E * (size + depth * dz.abs());
         let bound = reach * (size + reach);
         let [a, b, c] = simd.values3(weights);
         let sum = a + b + c;
         if !simd.beyond3(weights, bound) || 3.0 * bound > RELATIVE_ERROR * sum.abs() {
-            return None;
+            let is_outside = P::IS_EXACT && greatest3(a, b, c) > bound && -greatest3(-a, -b, -c) < -bound;
+            return (is_outside && lesser(depth, dz.abs()) >= LEAST_NORMAL).then_some(Self::Outside);
         }
         if P::IS_EXACT && lesser(depth, dz.abs()) < LEAST_NORMAL {
             return None;
@@ -201,19 +203,24 @@ impl<R: Real> Measured<R> {
         Self { weights: edge_functions(&x, &y), bounds, depths: az, direction: dz }
     }
 
-    /// `Equal` where rounding leaves it open.
-    pub(super) fn certain_signs(&self) -> [Ordering; 3] {
+    /// Of the exact weights, which are multiples of `grain`; `None` where rounding leaves it open.
+    pub(super) fn signs(&self, grain: f64) -> [Option<Ordering>; 3] {
         std::array::from_fn(|corner| {
-            let weight = self.weights[corner].to_f64();
-            if weight.abs() > self.bounds[corner] { weight.total_cmp(&0.0) } else { Ordering::Equal }
+            let (weight, bound) = (self.weights[corner].to_f64(), self.bounds[corner]);
+            if weight.abs() > bound {
+                Some(weight.total_cmp(&0.0))
+            } else {
+                // Half of it, for the rounding of the sum.
+                (weight.abs() + bound < 0.5 * grain).then_some(Ordering::Equal)
+            }
         })
     }
 
     /// The weights of a point of the triangle: none where the ray passes it for certain.
     pub(super) fn weights_inside(&self) -> Option<[R; 3]> {
-        let signs = self.certain_signs();
-        let any_negative = signs.contains(&Ordering::Less);
-        if any_negative && signs.contains(&Ordering::Greater) {
+        let signs = self.signs(0.0);
+        let any_negative = signs.contains(&Some(Ordering::Less));
+        if any_negative && signs.contains(&Some(Ordering::Greater)) {
             return None;
         }
         // What is left on the wrong side of an edge is so by rounding: it lies on the edge.
@@ -245,6 +252,7 @@ fn lesser(a: f64, b: f64) -> f64 {
 
 /// Without `f64::max`'s care for NaN.
 #[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
+fn greatest3(a: f64, b: f64, c: f64) -> f64 {
+    let greater = if a > b { a } else { b };
+    if greater > c { greater } else { c }
 }

@@ -12,7 +12,7 @@
 use std::cmp::Ordering;
 
 use super::Triangle;
-use super::evaluation::{Measured, Real};
+use super::evaluation::{Measured, RELATIVE_ERROR, Real};
 use super::triangle_hit::{TriangleHit, TriangleRay};
 use crate::math::{DoubleDouble, Expansion, nearest_quotient, rounds_alike};
 
@@ -20,14 +20,29 @@ use crate::math::{DoubleDouble, Expansion, nearest_quotient, rounds_alike};
 enum Verdict {
     /// The ray passes it, for certain.
     Miss,
-    /// The ray hits its inside for certain, within `t_error` of `t`.
+    /// The ray hits it for certain, within `t_error` of `t`: between those of its corners that have a weight, inside, on an edge or
+    /// at a vertex.
     Hit {
         t: f64,
         t_error: f64,
         u: f64,
         v: f64,
+        has_weight: [bool; 3],
     },
     Open,
+}
+
+impl Verdict {
+    /// The hit, or that there is none; an error where that is open, or to which float `t` rounds.
+    fn settled(self) -> Result<Option<TriangleHit>, Self> {
+        match self {
+            Self::Miss => Ok(None),
+            Self::Hit { t, t_error, u, v, .. } if rounds_alike(t, t_error) => {
+                Ok(Some(TriangleHit { t: t as f32, u: u as f32, v: v as f32 }))
+            }
+            open => Err(open),
+        }
+    }
 }
 
 impl TriangleRay {
@@ -35,16 +50,10 @@ impl TriangleRay {
     #[cold]
     #[inline(never)]
     pub(super) fn hit_exactly(&self, triangle: &Triangle) -> Option<TriangleHit> {
-        if let Verdict::Miss = self.verdict::<f64>(triangle) {
-            return None;
-        }
-        match self.verdict::<DoubleDouble>(triangle) {
-            Verdict::Miss => None,
-            Verdict::Hit { t, t_error, u, v } if rounds_alike(t, t_error) => {
-                Some(TriangleHit { t: t as f32, u: u as f32, v: v as f32 })
-            }
-            _ => Meeting::of(self, triangle).hit(),
-        }
+        self.verdict::<f64>(triangle)
+            .settled()
+            .or_else(|_| self.verdict::<DoubleDouble>(triangle).settled())
+            .unwrap_or_else(|_| Meeting::of(self, triangle).hit())
     }
 
     /// The weights of the vertices where the line meets the plane, up to a common factor, each to within an ulp; all 0 where it
@@ -67,17 +76,25 @@ impl TriangleRay {
 
     fn order(&self, first: &Triangle, second: &Triangle) -> Ordering {
         // Both sides of a surface, and decals on planes across an axis: many scenes have those.
-        if first.has_corners_of(second) || first.lies_across_an_axis_with(second) {
+        const ALL: [bool; 3] = [true; 3];
+        if first.corners_are_among(ALL, second, ALL) || first.lies_across_an_axis_with(second) {
             return Ordering::Equal;
         }
-        let hit = |triangle| match self.verdict::<DoubleDouble>(triangle) {
-            Verdict::Hit { t, t_error, .. } => Some((t, t_error)),
-            _ => None,
-        };
-        if let (Some((t, t_error)), Some((other, other_error))) = (hit(first), hit(second))
-            && (t - other).abs() > 2.0 * (t_error + other_error)
+        let verdicts = (self.verdict::<DoubleDouble>(first), self.verdict::<DoubleDouble>(second));
+        if let (
+            Verdict::Hit { t, t_error, has_weight, .. },
+            Verdict::Hit { t: other, t_error: other_error, has_weight: others_weight, .. },
+        ) = verdicts
         {
-            return t.total_cmp(&other);
+            if (t - other).abs() > 2.0 * (t_error + other_error) {
+                return t.total_cmp(&other);
+            }
+            // On an edge or at a vertex that they share.
+            if first.corners_are_among(has_weight, second, others_weight)
+                && second.corners_are_among(others_weight, first, has_weight)
+            {
+                return Ordering::Equal;
+            }
         }
         if first.lies_in_plane_of(second) {
             return Ordering::Equal;
@@ -91,15 +108,21 @@ impl TriangleRay {
     /// See [`Measured`] for the bounds.
     fn verdict<R: Real>(&self, triangle: &Triangle) -> Verdict {
         let measured = Measured::<R>::of(self, triangle);
-        let signs = measured.certain_signs();
-        if signs.contains(&Ordering::Less) && signs.contains(&Ordering::Greater) {
+        let signs = measured.signs(self.grain(triangle));
+        if signs.contains(&Some(Ordering::Less)) && signs.contains(&Some(Ordering::Greater)) {
             return Verdict::Miss;
         }
-        let [a, b, c] = measured.weights;
+        let has_weight = signs.map(|sign| sign != Some(Ordering::Equal));
+        if has_weight == [false; 3] {
+            // It runs in the triangle's plane.
+            return Verdict::Miss;
+        }
+        let [a, b, c] =
+            std::array::from_fn(|corner| if has_weight[corner] { measured.weights[corner] } else { R::from(0.0) });
         let sum = (a + b + c).to_f64();
         let bound: f64 = measured.bounds.iter().sum();
-        // Twice the bound is left of the sum at the least.
-        if signs.contains(&Ordering::Equal) || sum.abs() <= 3.0 * bound {
+        // What `u` and `v` need.
+        if signs.contains(&None) || bound > RELATIVE_ERROR * sum.abs() {
             return Verdict::Open;
         }
         let [az, bz, cz] = measured.depths;
@@ -107,7 +130,26 @@ impl TriangleRay {
         let t = (a * az + b * bz + c * cz).to_f64() / denominator;
         // Three roundings of f64, two of them of the parts.
         let t_error = measured.t_bound(sum.abs()) / denominator.abs() * 2.0 + t.abs() * (4.0 * f64::EPSILON);
-        Verdict::Hit { t, t_error, u: b.to_f64() / sum, v: c.to_f64() / sum }
+        Verdict::Hit { t, t_error, u: b.to_f64() / sum, v: c.to_f64() / sum, has_weight }
+    }
+
+    /// Edge functions are multiples of this: a sheared coordinate `ax dz - dx az` is one of the grain of the vertices and the origin
+    /// times that of the direction, and an edge function one of its square.
+    fn grain(&self, triangle: &Triangle) -> f64 {
+        let of_positions = triangle.axes.as_flattened().iter().chain(&self.origin[..3]).map(last_place).min();
+        let of_direction = self.direction[..3].iter().map(last_place).min();
+        of_positions.zip(of_direction).map_or(0.0, |(position, direction)| 2f64.powi(2 * (position + direction)))
+    }
+}
+
+/// Of which power of two a number is a multiple. Of 0, which is one of all, 2^128.
+fn last_place(value: &f32) -> i32 {
+    const LEAST: i32 = -149;
+    let (exponent, fraction) = (value.to_bits() >> 23 & 0xFF, value.to_bits() & 0x007F_FFFF);
+    match (exponent, fraction) {
+        (0, 0) => 128,
+        (0, _) => LEAST + fraction.trailing_zeros() as i32,
+        _ => LEAST + exponent as i32 - 1 + (fraction | 1 << 23).trailing_zeros() as i32,
     }
 }
 

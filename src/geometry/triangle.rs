@@ -118,10 +118,10 @@ impl Triangle {
         (&x * &dx + &y * &dy + &z * &dz).to_f64()
     }
 
-    /// Whether each vertex is one of the other's.
-    pub(crate) fn has_corners_of(&self, other: &Self) -> bool {
-        let is_corner = |at: [f32; 3]| (0..3).any(|corner| other.vertex(corner) == at);
-        (0..3).all(|corner| is_corner(self.vertex(corner)))
+    /// Whether each of these vertices is at the place of one of those of the other.
+    pub(crate) fn corners_are_among(&self, these: [bool; 3], other: &Self, those: [bool; 3]) -> bool {
+        let is_there = |at: [f32; 3]| (0..3).any(|corner| those[corner] && other.vertex(corner) == at);
+        (0..3).all(|corner| !these[corner] || is_there(self.vertex(corner)))
     }
 
     /// Whether all vertices of both have one coordinate in common.

@@ -335,7 +335,7 @@ impl PrecisionMode for Exact {
     ) -> Option<TriangleHit> {
         match Evaluation::inside::<_, Self>(Scalar, ray, &ray.corners(triangle), interval.t_min) {
             Some(Evaluation::Inside(hit)) => Some(hit),
-            Some(Evaluation::Behind) => None,
+            Some(Evaluation::Outside | Evaluation::Behind) => None,
             Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
             _ => ray.hit_exactly(triangle),
         }
@@ -415,7 +415,8 @@ fn evaluate_slowly(
             Some(TriangleHit { t: t as f32, ..hit })
         }
         Evaluation::Behind => None,
-        Evaluation::Outside | Evaluation::Uncertain => Some(otherwise()),
+        Evaluation::Outside => Some(otherwise()),
+        Evaluation::Uncertain => Some(ray.hit_exactly(triangle).unwrap_or_else(otherwise)),
     }
 }
 
@@ -561,6 +562,45 @@ mod tests {
         let down = Ray { direction: -ray.direction, ..ray };
         let hit = TriangleRay::new(&down).hit::<Accurate>(&triangle, interval).expect("it goes through the floor");
         assert_eq!(hit.t, f32::from_bits(2));
+    }
+
+    /// Found by gnomon-hard: doubled precision could not tell `t` from another.
+    #[test]
+    fn a_hit_of_a_triangle_with_a_vertex_at_1e38_is_within_half_an_ulp() {
+        let hits = [
+            (
+                [
+                    [1e38, -0.531_099_5, 0.068_102_6],
+                    [0.006_702_502_3, -0.344_562_4, -0.133_304_79],
+                    [0.172_234_55, -0.565_565_76, -0.225_932_12],
+                ],
+                [1.762_007_5, -1.787_725_3, 0.626_893_9],
+                [-0.911_463_4, 1.947_891, -1.133_371_8],
+            ),
+            (
+                [
+                    [1e38, 1.225_553, 0.753_077],
+                    [-0.684_383_63, 0.906_593_3, 1.097_764_3],
+                    [-0.798_498_5, 1.094_277_4, 0.850_446_5],
+                ],
+                [1.471_926_9, 2.307_083_4, 2.233_842_1],
+                [-0.779_930_7, -1.468_113_7, -1.451_633_9],
+            ),
+        ];
+        for (vertices, origin, direction) in hits {
+            let [origin, direction] = [origin, direction].map(Vec3::from_array);
+            let ray = Ray { origin, t_min: 0.0, direction, t_max: f32::INFINITY };
+            let hit = TriangleRay::new(&ray).hit::<Accurate>(&Triangle::new(vertices, 0, 0), WHOLE_LINE);
+            let (hit, [t, u, v]) = (hit.expect("a hit"), exact(&ray, &vertices).expect("not parallel"));
+            assert!(is_near(hit.t, &t, 0.51 * ulp(hit.t)), "{ray:?}: t is {:e}", hit.t);
+            let uv_bound = 0.52 * f64::from(f32::EPSILON) / 2.0;
+            assert!(
+                is_near(hit.u, &u, uv_bound) && is_near(hit.v, &v, uv_bound),
+                "{ray:?}: u {:e} v {:e}",
+                hit.u,
+                hit.v
+            );
+        }
     }
 
     #[test]

@@ -35,9 +35,6 @@ pub enum BuildError {
     )]
     InvalidSphere { geometry_id: u32, primitive_id: u32, centre: [f32; 3], radius: f32 },
 
-    #[error("{0} is not built yet")]
-    Unsupported(&'static str),
-
     #[error("the build was cancelled by the progress callback")]
     Cancelled,
 

@@ -33,6 +33,14 @@ fn variants() -> Vec<BuildOptions> {
     scalar.chain(wide.iter().copied()).chain(compact).chain(grid).chain(grids).chain(octree).collect()
 }
 
+/// The structures of default quality, with exact decisions.
+fn exact_variants() -> Vec<BuildOptions> {
+    use Structure::{BruteForce, BspTree, Bvh, Grid, KdTree, Octree, WideBvh};
+    [BruteForce, Grid, Octree, KdTree, BspTree, Bvh, WideBvh]
+        .map(|structure| BuildOptions { structure, precision: Precision::Exact, ..BuildOptions::default() })
+        .into()
+}
+
 /// Floats as bits, so that -0 and 0 differ, and a NaN would be seen.
 fn bits(hit: &Hit) -> [u32; 9] {
     let [x, y, z] = hit.normal.to_array();
@@ -111,7 +119,7 @@ fn batches_of_every_length_give_the_hits_of_single_calls() {
     const LENGTHS: [usize; 12] = [0, 1, 2, 31, 32, 33, 63, 64, 65, 127, 255, 1000];
 
     for mesh in meshes() {
-        for precision in [Precision::Fast, Precision::Accurate] {
+        for precision in [Precision::Fast, Precision::Accurate, Precision::Exact] {
             for variant in variants() {
                 let scene = build(&mesh, BuildOptions { precision, ..variant });
                 let mut rng = Rng::new(19);
@@ -150,7 +158,7 @@ fn batches_of_every_length_give_the_hits_of_single_calls() {
 fn every_structure_gives_the_hits_of_brute_force() {
     for mesh in meshes() {
         let rays = rays_for(&mesh, &mut Rng::new(7));
-        for precision in [Precision::Fast, Precision::Accurate] {
+        for precision in [Precision::Fast, Precision::Accurate, Precision::Exact] {
             let brute_force = BuildOptions { structure: Structure::BruteForce, precision, ..BuildOptions::default() };
             let reference = build(&mesh, brute_force);
             let expected: Vec<Hit> = rays.iter().map(|ray| reference.intersect(ray)).collect();
@@ -208,7 +216,7 @@ fn thread_count_does_not_change_the_scene() {
 #[test]
 fn retrace_keeps_the_hit_at_the_closed_ends_and_loses_it_beyond() {
     for mesh in meshes() {
-        for variant in variants() {
+        for variant in variants().into_iter().chain(exact_variants()) {
             let scene = build(&mesh, variant);
             for ray in rays_for(&mesh, &mut Rng::new(13)) {
                 let hit = scene.intersect(&ray);
@@ -248,6 +256,43 @@ fn counts_are_within_what_the_structure_has() {
                 if variant.structure == Structure::BruteForce && hit.is_hit() {
                     assert_eq!(primitives, stats.reference_count, "{what}");
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn exact_hits_on_any_finite_floats_are_those_of_brute_force() {
+    let mut rng = Rng::new(31);
+    for round in 0..30 {
+        // All magnitudes that there are, or those around one.
+        let (centre, range) = if round % 3 == 0 { (0, 278) } else { (rng.below(240) as i32 - 120, 20) };
+        let mut float = || {
+            let exponent = (centre + rng.below(range) as i32 - range as i32 / 2).clamp(-148, 127);
+            (f64::from(rng.signed()) * 2f64.powi(exponent)) as f32
+        };
+        let mut point = || Vec3::new(float(), float(), float());
+        let mesh = Mesh::from_soup("any floats", (0..300).map(|_| point()).collect());
+        let scenes: Vec<Scene> = exact_variants().into_iter().map(|options| build(&mesh, options)).collect();
+        let origins: Vec<Vec3> = (0..300).map(|_| point()).collect();
+        for origin in origins {
+            let corners = mesh.triangles[rng.below(mesh.triangles.len())].map(|corner| mesh.vertices[corner as usize]);
+            let share = [rng.signed().abs(), rng.signed().abs()];
+            let edge = corners[0] * (1.0 - share[0]) + corners[1] * share[0];
+            let target = edge * (1.0 - share[1]) + corners[2] * share[1];
+            // Half, because differences may exceed all floats.
+            let direction = target * 0.5 - origin * 0.5;
+            let ray = Ray { origin, t_min: 0.0, direction, t_max: f32::INFINITY };
+            let expected = scenes[0].intersect(&ray);
+            for (scene, options) in scenes.iter().zip(exact_variants()) {
+                let hit = scene.intersect(&ray);
+                assert_eq!(
+                    bits(&hit),
+                    bits(&expected),
+                    "{options:?} {hit:?} instead of {expected:?}; {}",
+                    hexadecimal(&ray)
+                );
+                assert_eq!(scene.occluded(&ray), expected.is_hit(), "{options:?}; {}", hexadecimal(&ray));
             }
         }
     }
@@ -298,6 +343,32 @@ fn degenerate_scenes_take_bounded_memory_and_give_the_hits_of_brute_force() {
             for ray in rays_for(&mesh, &mut Rng::new(29)).iter().take(300) {
                 let (hit, expected) = (scene.intersect(ray), reference.intersect(ray));
                 assert_eq!(bits(&hit), bits(&expected), "{} {structure:?}: {}", mesh.name, hexadecimal(ray));
+            }
+        }
+    }
+}
+
+/// Found by gnomon-hard: the ray passes the edge between the two within the band, and an edge function of either overflows.
+#[test]
+fn triangles_whose_edge_functions_overflow_are_decided_alike() {
+    let [a, b, c, d] = [
+        Vec3::new(0.809_017, -0.5, -0.309_017),
+        Vec3::new(0.5, -0.309_017, -0.809_017),
+        Vec3::new(0.850_650_8, 0.0, -0.525_731_1),
+        Vec3::X,
+    ];
+    let origin = Vec3::new(1.234_939_9, -1.465_358_4, -0.572_405_64);
+    let direction = Vec3::new(-0.402_562_02, 1.245_910_9, 0.141_789_29);
+    for exponent in [0, 39, 60, 64, 80, 100, 120] {
+        let scale = 2f32.powi(exponent);
+        let mesh = Mesh::from_soup("two triangles", [a, b, c, a, c, d].map(|corner| corner * scale).to_vec());
+        let ray = Ray { origin: origin * scale, t_min: 0.0, direction, t_max: f32::INFINITY };
+        for precision in [Precision::Accurate, Precision::Exact] {
+            let brute_force = BuildOptions { structure: Structure::BruteForce, precision, ..BuildOptions::default() };
+            let expected = build(&mesh, brute_force).intersect(&ray);
+            for options in variants() {
+                let hit = build(&mesh, BuildOptions { precision, ..options }).intersect(&ray);
+                assert_eq!(bits(&hit), bits(&expected), "2^{exponent}, {options:?}");
             }
         }
     }

@@ -214,7 +214,7 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
     /// leave their range by less than 2^-30 of the largest (`evaluation.rs`). Twice that is allowed for, and underflow.
     ///
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure, nor surely inside. One among the edge functions
-    /// is passed over by `min` and `max`; the others refuse all the same, and what is sure is looked at again.
+    /// is passed over by `min` and `max`; the others refuse all the same, and nothing is sure where one was.
     #[inline(always)]
     fn candidates<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
         let leaf = self.bvh.leaves.leaf(child.triangles());
@@ -260,8 +260,8 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         lanes &= !(simd.less(last, t_min) | simd.less(t_max, first));
         // Where edge functions overflow they may have made a NaN, which nothing above keeps.
         let overflow = simd.mul(simd.add(a, simd.add(b, c)), zero);
-        let is_finite = simd.less_or_equal(overflow, zero);
-        let inside = is_finite & simd.less_or_equal(t_min, first) & simd.less_or_equal(last, t_max);
+        let sure = sure & simd.less_or_equal(overflow, zero);
+        let inside = simd.less_or_equal(t_min, first) & simd.less_or_equal(last, t_max);
         Candidates { lanes, sure, inside }
     }
 

@@ -1,4 +1,4 @@
-#include "bench/degenerate_scenes.hpp"
+#include "rays/degenerate_scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
