@@ -42,43 +42,43 @@ impl<T: Primitive> AnyAccel<T> {
     /// once.
     pub(super) fn for_each_place(&self, mut visit: impl FnMut(u32, (u32, u32))) {
         match self.stored() {
-            Stored::InOrder(primitives) => {
+            Stored::List(primitives) => {
                 for (place, primitive) in (0..).zip(primitives) {
                     visit(place, primitive.ids());
                 }
             }
-            Stored::InLeaves(bvh) => bvh.for_each_place(visit),
-            Stored::InCompactLeaves(bvh) => bvh.for_each_place(visit),
+            Stored::Leaves(bvh) => bvh.for_each_place(visit),
+            Stored::CompactLeaves(bvh) => bvh.for_each_place(visit),
         }
     }
 
     pub(super) fn at_place(&self, place: u32, ids: (u32, u32)) -> Option<T> {
         match self.stored() {
-            Stored::InOrder(primitives) => primitives.get(place as usize).copied(),
-            Stored::InLeaves(bvh) => bvh.at_place(place, ids),
-            Stored::InCompactLeaves(bvh) => bvh.at_place(place, ids),
+            Stored::List(primitives) => primitives.get(place as usize).copied(),
+            Stored::Leaves(bvh) => bvh.at_place(place, ids),
+            Stored::CompactLeaves(bvh) => bvh.at_place(place, ids),
         }
     }
 
     fn stored(&self) -> Stored<'_, T> {
         match self {
-            Self::BruteForce(brute_force) => Stored::InOrder(brute_force.primitives()),
-            Self::Grid(grid) => Stored::InOrder(grid.primitives()),
-            Self::Octree(octree) => Stored::InOrder(octree.primitives()),
-            Self::KdTree(tree) => Stored::InOrder(tree.primitives()),
-            Self::BspTree(tree) => Stored::InOrder(tree.primitives()),
-            Self::Bvh(bvh) => Stored::InOrder(&bvh.primitives),
-            Self::WideBvh(bvh) => Stored::InLeaves(bvh),
-            Self::CompactWideBvh(bvh) => Stored::InCompactLeaves(bvh),
+            Self::BruteForce(brute_force) => Stored::List(brute_force.primitives()),
+            Self::Grid(grid) => Stored::List(grid.primitives()),
+            Self::Octree(octree) => Stored::List(octree.primitives()),
+            Self::KdTree(tree) => Stored::List(tree.primitives()),
+            Self::BspTree(tree) => Stored::List(tree.primitives()),
+            Self::Bvh(bvh) => Stored::List(&bvh.primitives),
+            Self::WideBvh(bvh) => Stored::Leaves(bvh),
+            Self::CompactWideBvh(bvh) => Stored::CompactLeaves(bvh),
         }
     }
 }
 
 /// Where a structure has its primitives.
 enum Stored<'a, T: Primitive> {
-    InOrder(&'a [T]),
-    InLeaves(&'a WideBvh<T::Leaves>),
-    InCompactLeaves(&'a WideBvh<T::CompactLeaves>),
+    List(&'a [T]),
+    Leaves(&'a WideBvh<T::Leaves>),
+    CompactLeaves(&'a WideBvh<T::CompactLeaves>),
 }
 
 /// What `Auto` stands for. On random triangles the binary BVH takes 1.51, 1.28 and 1.12 times as long as brute force at 8, 16
