@@ -13,6 +13,13 @@
 //   gnomon_scene_builder_free(builder);
 //   if (gnomon_intersect(scene, &ray, &hit)) ...
 //
+// A path tracer's bounce, without an epsilon
+//   if (gnomon_intersect(scene, &ray, &hit) && gnomon_surface_point(scene, &ray, &hit, &point) == GNOMON_OK) {
+//       sample_direction(point.normal, next.direction);
+//       gnomon_offset_origin(&point, next.direction, next.origin);  // off the surface, on the side of the direction
+//       next.t_min = 0, next.t_max = INFINITY;
+//   }
+//
 // Errors
 //   Functions that can fail return a GnomonStatus; gnomon_last_error() gives the calling thread's last failure as
 //   one sentence. Outputs are written only on success. Numbers for structures, precisions and the like enter as
@@ -46,6 +53,12 @@
 
 // `indices` are `uint32_t`.
 #define GNOMON_INDEX_U32 2u
+
+// A `GnomonSurfacePoint` of a triangle.
+#define GNOMON_SURFACE_TRIANGLE 0u
+
+// A `GnomonSurfacePoint` of a sphere.
+#define GNOMON_SURFACE_SPHERE 1u
 
 // All went well.
 #define GNOMON_OK 0u
@@ -326,6 +339,28 @@ typedef struct GnomonRayCounts {
     uint32_t primitives_tested;
 } GnomonRayCounts;
 
+// The point where a ray hit a surface. 80 bytes.
+//
+// It stands for the point where the exact ray meets the surface. Where FAST or ACCURATE took a triangle that the exact ray
+// passes by less than their rounding, it stands for a point of that triangle as near to the ray.
+typedef struct GnomonSurfacePoint {
+    // The point, computed in double and rounded once.
+    float position[3];
+    // The exact point is no further from `position` along each axis: proven, and seldom above `2^-24 * |position|`. Not
+    // below 0.
+    float error[3];
+    // Of unit length, to the side that `GnomonHit.normal` points to. Of a triangle each component is within `0.51 * 2^-24`;
+    // of a sphere it is outward and besides off by no more than `error` is in radii.
+    float normal[3];
+    // `GNOMON_SURFACE_*`.
+    uint32_t surface;
+    // The scene's `GNOMON_PRECISION_*`.
+    uint32_t precision;
+    // What `gnomon_offset_origin` needs of the surface: a triangle's vertices, x, y and z of each; a sphere's centre and
+    // radius, then zeros.
+    float shape[9];
+} GnomonSurfacePoint;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -468,6 +503,43 @@ GnomonStatus gnomon_occluded_n(const struct GnomonScene *scene,
                                size_t count,
                                uint8_t *occluded_out,
                                const struct GnomonQueryOptions *options);
+
+// Where a ray hit: the point, a bound on its error, and the normal. `hit` is what this scene answered to `ray`.
+//
+// The point is computed anew from the ray and the surface, not from `hit`, of which the ids count, and `t` to tell a sphere's
+// two sides apart. The scene does not look for them: the first call makes a table of 4 bytes for each triangle and sphere,
+// which stays with the scene and counts among its `bytes`; a scene that is never asked has none.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, a hit that is a miss, a ray that is not valid, ids of what this
+// scene does not have or no ray can hit, and a ray that does not hit what they name; `GNOMON_ERROR_OUT_OF_MEMORY` where there
+// is no room for the table. Accuracy: see `GnomonSurfacePoint`; the same in every structure, precision and instruction set.
+// Any number of threads may call this on one scene, the first call among them.
+GnomonStatus gnomon_surface_point(const struct GnomonScene *scene,
+                                  const struct GnomonRay *ray,
+                                  const struct GnomonHit *hit,
+                                  struct GnomonSurfacePoint *point_out);
+
+// The origin of a ray that leaves a surface with that direction and `t_min` 0, and does not hit it again.
+//
+// `origin_out` gets three floats (x, y, z) strictly on that side of the exact surface that `direction` leads to: its plane's
+// for a triangle, inside or outside for a sphere. A direction exactly along the surface leads to the side of the normal, or out
+// of the sphere. The origin is off the surface by `error`, with 2^-40 of the surface's size and a rounding, and by more only
+// where a triangle's own test, of the scene's precision, would still take the ray for a hit, because the ray passes an edge by less
+// than the test's rounding: then by as much as it takes.
+//
+// What is promised: the ray from `origin_out` with this `direction`, to the bit, `t_min` 0 and any `t_max` does not hit the
+// surface that it leaves; into a sphere it hits it once, where it leaves the sphere. A direction that is computed from the
+// origin, towards a light for example, is as good in EXACT as long as it leads to the same side. Of other surfaces nothing
+// is known here: one that touches or crosses this one nearer than the step may be hit at once, or lie behind the origin.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, a direction that is zero or not finite, a point that is not as
+// `gnomon_surface_point` gives it, or one so far out that no float lies beyond it. Needs no scene. Any thread may call this.
+//
+// Sources: Waechter and Binder 2019, "A fast and robust method for avoiding self-intersection", Ray Tracing Gems, chapter 6;
+// Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th edition, section 6.8.
+GnomonStatus gnomon_offset_origin(const struct GnomonSurfacePoint *point,
+                                  const float direction[3],
+                                  float origin_out[3]);
 
 // The version of the library that answers, as `major * 10000 + minor * 100 + patch`.
 //

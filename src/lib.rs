@@ -24,5 +24,5 @@ pub use accel::{Precision, Quality, RayCounts, Stats, Structure};
 pub use geometry::{
     Aabb, Hit, INVALID_ID, IndexBytes, IndexView, PositionView, Ray, SphereView, TriangleView, span_bytes,
 };
-pub use scene::{BuildError, BuildOptions, InvalidTriangles, Scene, SceneBuilder};
+pub use scene::{BuildError, BuildOptions, InvalidTriangles, Scene, SceneBuilder, SurfaceError, SurfacePoint};
 pub use simd::Isa;

@@ -19,7 +19,8 @@ fn assert_committed(name: &str, expected: &str) {
 }
 
 /// The files of the interface in the order in which a reader wants them.
-const SOURCES: [&str; 7] = ["types.rs", "status.rs", "options.rs", "builder.rs", "scene.rs", "query.rs", "version.rs"];
+const SOURCES: [&str; 8] =
+    ["types.rs", "status.rs", "options.rs", "builder.rs", "scene.rs", "query.rs", "surface_point.rs", "version.rs"];
 
 fn generated_header() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

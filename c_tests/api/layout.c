@@ -23,6 +23,14 @@ ASSERT_OFFSET(GnomonHit, primitive_id, 24);
 ASSERT_OFFSET(GnomonHit, geometry_id, 28);
 ASSERT_OFFSET(GnomonHit, instance_id, 32);
 
+ASSERT_SIZE(GnomonSurfacePoint, 80);
+ASSERT_OFFSET(GnomonSurfacePoint, position, 0);
+ASSERT_OFFSET(GnomonSurfacePoint, error, 12);
+ASSERT_OFFSET(GnomonSurfacePoint, normal, 24);
+ASSERT_OFFSET(GnomonSurfacePoint, surface, 36);
+ASSERT_OFFSET(GnomonSurfacePoint, precision, 40);
+ASSERT_OFFSET(GnomonSurfacePoint, shape, 44);
+
 ASSERT_SIZE(GnomonRayCounts, 12);
 ASSERT_OFFSET(GnomonRayCounts, nodes_visited, 0);
 ASSERT_OFFSET(GnomonRayCounts, cells_stepped, 4);

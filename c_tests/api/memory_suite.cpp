@@ -83,6 +83,19 @@ TEST_CASE("build_too_large_for_the_address_space_is_out_of_memory_and_the_builde
     }
 }
 
+TEST_CASE("table_of_places_too_large_for_the_address_space_is_out_of_memory_and_a_later_call_makes_it") {
+    const SceneHandle scene = build_scene({flat_grid(1500)});
+    const GnomonRay ray = ray_down(0.25f, 0.25f);
+    const GnomonHit hit = intersect(scene, ray);
+    GnomonSurfacePoint point;
+    {
+        const AddressSpaceLimit limit(8 * kMebibyte);
+        CHECK(gnomon_surface_point(scene.get(), &ray, &hit, &point) == GNOMON_ERROR_OUT_OF_MEMORY);
+        CHECK(last_error().find("18000000 bytes") != std::string::npos);
+    }
+    CHECK(gnomon_surface_point(scene.get(), &ray, &hit, &point) == GNOMON_OK);
+}
+
 TEST_CASE("geometry_too_large_for_the_address_space_is_out_of_memory_and_the_builder_is_as_it_was") {
     const BuilderHandle builder = new_builder();
     const TriangleMesh small = unit_triangle();

@@ -16,6 +16,11 @@ impl<T: Primitive> BruteForce<T> {
         Ok(Self { primitives })
     }
 
+    /// Each once.
+    pub(super) fn primitives(&self) -> &[T] {
+        &self.primitives
+    }
+
     pub(crate) fn shape(&self) -> Shape {
         Shape {
             reference_count: self.primitives.len(),

@@ -1,6 +1,6 @@
 //! What queries look for, the order in which hits win, and a leaf tested primitive by primitive.
 
-use super::primitive::{Primitive, Surface, SurfacePoint};
+use super::primitive::{AnySurface, Primitive, Surface};
 use super::tally::{RayCounts, Tally};
 use crate::geometry::{INVALID_ID, Interval, PrecisionMode, Ray, Triangle, TriangleHit};
 
@@ -47,9 +47,9 @@ pub(crate) struct ClosestHit<T = Triangle> {
 
 impl<T: Surface> ClosestHit<T> {
     /// For those who do not know what was hit.
-    pub(crate) fn on_any_surface(self) -> ClosestHit<SurfacePoint> {
+    pub(crate) fn on_any_surface(self) -> ClosestHit<AnySurface> {
         let (geometry_id, primitive_id) = self.primitive.ids();
-        let primitive = SurfacePoint { geometry_id, primitive_id, normal: self.primitive.normal() };
+        let primitive = AnySurface { geometry_id, primitive_id, normal: self.primitive.normal() };
         ClosestHit { t: self.t, u: self.u, v: self.v, primitive }
     }
 }

@@ -19,13 +19,13 @@ pub(crate) trait Surface {
 
 /// A surface where a ray hit it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SurfacePoint {
+pub(crate) struct AnySurface {
     pub(crate) geometry_id: u32,
     pub(crate) primitive_id: u32,
     pub(crate) normal: Vec3,
 }
 
-impl Surface for SurfacePoint {
+impl Surface for AnySurface {
     #[inline(always)]
     fn ids(&self) -> (u32, u32) {
         (self.geometry_id, self.primitive_id)
@@ -90,6 +90,13 @@ impl Part for SpherePart {
     fn bounds(&self) -> (DVec3, DVec3) {
         SpherePart::bounds(self)
     }
+}
+
+/// One of any kind.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum AnyPrimitive {
+    Triangle(Triangle),
+    Sphere(Sphere),
 }
 
 /// One thing that a ray can hit.
@@ -229,7 +236,7 @@ impl Primitive for Triangle {
 
 impl Primitive for Sphere {
     type Ray = SphereRay;
-    type Surface = SurfacePoint;
+    type Surface = AnySurface;
     type Leaves = Spheres;
     type CompactLeaves = Spheres;
     type Shape = [u32; 4];
@@ -248,8 +255,8 @@ impl Primitive for Sphere {
     }
 
     #[inline(always)]
-    fn surface(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        SurfacePoint { geometry_id: self.geometry_id, primitive_id: self.primitive_id, normal: self.normal_at(ray, t) }
+    fn surface(&self, ray: &Ray, t: f32) -> AnySurface {
+        AnySurface { geometry_id: self.geometry_id, primitive_id: self.primitive_id, normal: self.normal_at(ray, t) }
     }
 
     #[inline(always)]

@@ -9,6 +9,7 @@ mod pointers;
 mod query;
 mod scene;
 mod status;
+mod surface_point;
 mod types;
 mod version;
 
@@ -17,5 +18,6 @@ pub use options::*;
 pub use query::*;
 pub use scene::*;
 pub use status::*;
+pub use surface_point::*;
 pub use types::*;
 pub use version::*;

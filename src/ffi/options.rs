@@ -159,12 +159,7 @@ impl GnomonBuildOptions {
                 GNOMON_QUALITY_HIGH => Quality::High,
                 other => return Err(unknown("quality", other)),
             },
-            precision: match self.precision {
-                GNOMON_PRECISION_FAST => Precision::Fast,
-                GNOMON_PRECISION_ACCURATE => Precision::Accurate,
-                GNOMON_PRECISION_EXACT => Precision::Exact,
-                other => return Err(unknown("precision", other)),
-            },
+            precision: precision(self.precision)?,
             isa: match self.isa {
                 GNOMON_ISA_AUTO => Isa::Auto,
                 GNOMON_ISA_SCALAR => Isa::Scalar,
@@ -244,6 +239,15 @@ pub(super) fn precision_number(precision: Precision) -> u32 {
     }
 }
 
+pub(super) fn precision(number: u32) -> Result<Precision, Failure> {
+    Ok(match number {
+        GNOMON_PRECISION_FAST => Precision::Fast,
+        GNOMON_PRECISION_ACCURATE => Precision::Accurate,
+        GNOMON_PRECISION_EXACT => Precision::Exact,
+        other => return Err(unknown("precision", other)),
+    })
+}
+
 pub(super) fn isa_number(isa: Isa) -> u32 {
     match isa {
         Isa::Auto => GNOMON_ISA_AUTO,
@@ -254,7 +258,7 @@ pub(super) fn isa_number(isa: Isa) -> u32 {
     }
 }
 
-fn unknown(field: &str, number: u32) -> Failure {
+pub(super) fn unknown(field: &str, number: u32) -> Failure {
     Failure::invalid(format!("{field} is {number}, which has no meaning"))
 }
 

@@ -120,7 +120,7 @@ pub unsafe extern "C-unwind" fn gnomon_scene_stats(
         }
         // SAFETY: the caller's promise; bytes may be written to any address.
         let bytes_out = unsafe { output_slice(stats_out.cast::<u8>(), stats_bytes, "stats_out") }?;
-        let stats = GnomonSceneStats::from(scene.0.stats());
+        let stats = GnomonSceneStats::from(&scene.0.stats());
         let known = stats_bytes.min(size_of::<GnomonSceneStats>());
         for place in &mut bytes_out[known..] {
             place.write(0);

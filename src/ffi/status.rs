@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::ffi::{CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::scene::BuildError;
+use crate::scene::{BuildError, SurfaceError};
 
 /// How a call ended: one of the `GNOMON_OK` and `GNOMON_ERROR_*` numbers. They never change their meaning; a later
 /// version may add some.
@@ -50,6 +50,21 @@ impl From<BuildError> for Failure {
             BuildError::Cancelled => GNOMON_ERROR_CANCELLED,
             BuildError::OverMemoryLimit { .. } | BuildError::OutOfMemory { .. } => GNOMON_ERROR_OUT_OF_MEMORY,
             BuildError::Threads(_) | BuildError::Internal(_) => GNOMON_ERROR_INTERNAL,
+        };
+        Self { status, message: error.to_string() }
+    }
+}
+
+impl From<SurfaceError> for Failure {
+    fn from(error: SurfaceError) -> Self {
+        let status = match error {
+            SurfaceError::OutOfMemory { .. } => GNOMON_ERROR_OUT_OF_MEMORY,
+            SurfaceError::Miss
+            | SurfaceError::InvalidRay
+            | SurfaceError::NotInScene { .. }
+            | SurfaceError::Passed { .. }
+            | SurfaceError::NoDirection { .. }
+            | SurfaceError::NoOrigin => GNOMON_ERROR_INVALID_ARGUMENT,
         };
         Self { status, message: error.to_string() }
     }

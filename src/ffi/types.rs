@@ -56,6 +56,35 @@ pub struct GnomonHit {
     pub instance_id: u32,
 }
 
+/// A `GnomonSurfacePoint` of a triangle.
+pub const GNOMON_SURFACE_TRIANGLE: u32 = 0;
+/// A `GnomonSurfacePoint` of a sphere.
+pub const GNOMON_SURFACE_SPHERE: u32 = 1;
+
+/// The point where a ray hit a surface. 80 bytes.
+///
+/// It stands for the point where the exact ray meets the surface. Where FAST or ACCURATE took a triangle that the exact ray
+/// passes by less than their rounding, it stands for a point of that triangle as near to the ray.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct GnomonSurfacePoint {
+    /// The point, computed in double and rounded once.
+    pub position: [f32; 3],
+    /// The exact point is no further from `position` along each axis: proven, and seldom above `2^-24 * |position|`. Not
+    /// below 0.
+    pub error: [f32; 3],
+    /// Of unit length, to the side that `GnomonHit.normal` points to. Of a triangle each component is within `0.51 * 2^-24`;
+    /// of a sphere it is outward and besides off by no more than `error` is in radii.
+    pub normal: [f32; 3],
+    /// `GNOMON_SURFACE_*`.
+    pub surface: u32,
+    /// The scene's `GNOMON_PRECISION_*`.
+    pub precision: u32,
+    /// What `gnomon_offset_origin` needs of the surface: a triangle's vertices, x, y and z of each; a sphere's centre and
+    /// radius, then zeros.
+    pub shape: [f32; 9],
+}
+
 /// What a query did to find its answer. 12 bytes.
 ///
 /// The same in every run, so that structures can be compared where clocks are noisy. Instruction sets round the bounds
@@ -236,6 +265,12 @@ const _: () = assert!(
 const _: () = assert!(size_of::<GnomonRay>() == 32);
 const _: () = assert!(size_of::<GnomonHit>() == 36);
 const _: () = assert!(size_of::<GnomonRayCounts>() == 12);
+const _: () = assert!(
+    size_of::<GnomonSurfacePoint>() == 80
+        && offset_of!(GnomonSurfacePoint, normal) == 24
+        && offset_of!(GnomonSurfacePoint, surface) == 36
+        && offset_of!(GnomonSurfacePoint, shape) == 44
+);
 const _: () = assert!(std::mem::offset_of!(GnomonRay, direction) == 16);
 const _: () = assert!(std::mem::offset_of!(GnomonHit, primitive_id) == 24);
 #[cfg(target_pointer_width = "64")]

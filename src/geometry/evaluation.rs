@@ -136,17 +136,7 @@ impl Evaluation {
     /// By the roundings of [`Measured`].
     pub(super) fn of<R: Real>(ray: &TriangleRay, triangle: &Triangle) -> Self {
         let measured = Measured::<R>::of(ray, triangle);
-        let signs = measured.signs(0.0);
-        let any_negative = signs.contains(&Some(Ordering::Less));
-        if any_negative && signs.contains(&Some(Ordering::Greater)) {
-            return Self::Outside;
-        }
-
-        // What is left on the wrong side of an edge is so by rounding: it lies on the edge.
-        let inside = measured.weights.map(|weight| {
-            let wrong_side = if any_negative { weight.to_f64() > 0.0 } else { weight.to_f64() < 0.0 };
-            if wrong_side { R::from(0.0) } else { weight }
-        });
+        let Some(inside) = measured.weights_inside() else { return Self::Outside };
         let az = measured.depths;
         let sum = inside[0] + inside[1] + inside[2];
         let weighted = inside[0] * az[0] + inside[1] * az[1] + inside[2] * az[2];
@@ -224,6 +214,20 @@ impl<R: Real> Measured<R> {
                 (weight.abs() + bound < 0.5 * grain).then_some(Ordering::Equal)
             }
         })
+    }
+
+    /// The weights of a point of the triangle: none where the ray passes it for certain.
+    pub(super) fn weights_inside(&self) -> Option<[R; 3]> {
+        let signs = self.signs(0.0);
+        let any_negative = signs.contains(&Some(Ordering::Less));
+        if any_negative && signs.contains(&Some(Ordering::Greater)) {
+            return None;
+        }
+        // What is left on the wrong side of an edge is so by rounding: it lies on the edge.
+        Some(self.weights.map(|weight| {
+            let wrong_side = if any_negative { weight.to_f64() > 0.0 } else { weight.to_f64() < 0.0 };
+            if wrong_side { R::from(0.0) } else { weight }
+        }))
     }
 
     /// How far the weighted sum of the depths is off at the most, where the sum of the weights is of this size. Wrong weights

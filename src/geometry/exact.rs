@@ -56,6 +56,13 @@ impl TriangleRay {
             .unwrap_or_else(|_| Meeting::of(self, triangle).hit())
     }
 
+    /// The weights of the vertices where the line meets the plane, up to a common factor, each to within an ulp; all 0 where it
+    /// runs in the plane.
+    #[cold]
+    pub(super) fn exact_weights(&self, triangle: &Triangle) -> [f64; 3] {
+        Meeting::of(self, triangle).weights.map(|weight| weight.to_f64())
+    }
+
     /// Whether the line meets the first of two triangles first, both hit; `otherwise` where it meets them in one point.
     #[cold]
     #[inline(never)]

@@ -26,7 +26,7 @@ pub(crate) struct Sphere {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SphereRay {
     origin: [f32; 3],
-    direction: [f32; 3],
+    pub(super) direction: [f32; 3],
     d: DVec3,
     /// `d.d`, and its inverse.
     a: f64,
@@ -80,6 +80,19 @@ impl Sphere {
         (from_centre + f64::from(t) * ray.direction.as_dvec3()).as_vec3()
     }
 
+    /// Above 0 outside, below 0 inside, 0 on the surface. Exact.
+    pub(super) fn side_of_point(&self, point: Vec3) -> f64 {
+        let from_centre = point.as_dvec3() - DVec3::from_array(self.centre.map(f64::from));
+        let (ww, rr) = (from_centre.length_squared(), f64::from(self.radius) * f64::from(self.radius));
+        let k = ww - rr;
+        if k.abs() > 8.0 * E * (ww + rr) {
+            return k;
+        }
+        let w: [Expansion; 3] = std::array::from_fn(|axis| Expansion::difference(point[axis], self.centre[axis]));
+        let radius = Expansion::difference(self.radius, 0.0);
+        (&w[0] * &w[0] + &w[1] * &w[1] + &w[2] * &w[2] - &radius * &radius).to_f64()
+    }
+
     /// In `f64`. With `e` its roundoff: `h` is off by `4 e sum |w_i d_i|` at most, each component of `w - (h/a) d` by
     /// `11 e |w|`, hence `D` by `40 e |w| |q| + 400 e^2 w.w + 5 e q.q`, and `k` by `8 e (w.w + r^2)`.
     #[inline(always)]
@@ -116,27 +129,29 @@ impl Sphere {
     #[inline(never)]
     fn roots_slowly(&self, ray: &SphereRay) -> Roots {
         const U: f64 = DoubleDouble::UNIT_ROUNDOFF;
+        let line = self.line(ray);
+        let (discriminant, size) = (line.discriminant().to_f64(), line.size());
+        let (a, h, k) = (line.a.to_f64(), line.h.to_f64(), (line.ww - line.rr).to_f64());
+        let bound = 64.0 * U * a * size;
+        if discriminant < -bound {
+            return Roots::None;
+        }
+        let q = -(h + discriminant.sqrt().copysign(h));
+        let h_bound = 8.0 * U * (a * size).sqrt();
+        let is_certain = bound <= RELATIVE_ERROR * discriminant
+            && h_bound <= RELATIVE_ERROR * q.abs()
+            && 16.0 * U * size <= RELATIVE_ERROR * k.abs();
+        if is_certain { in_order(q / a, k / q) } else { self.roots_exactly(ray) }
+    }
+
+    pub(super) fn line(&self, ray: &SphereRay) -> Line {
         let difference =
             |axis: usize| DoubleDouble::difference(f64::from(ray.origin[axis]), f64::from(self.centre[axis]));
         let w = [difference(0), difference(1), difference(2)];
         let d = ray.direction.map(|d| DoubleDouble::from(f64::from(d)));
         let dot = |p: [DoubleDouble; 3], q: [DoubleDouble; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         let radius = DoubleDouble::from(f64::from(self.radius));
-        let (a, h, ww, rr) = (dot(d, d), dot(w, d), dot(w, w), radius * radius);
-        let k = ww - rr;
-        let discriminant = (h * h - a * k).to_f64();
-        let size = ww.to_f64() + rr.to_f64();
-        let bound = 64.0 * U * a.to_f64() * size;
-        if discriminant < -bound {
-            return Roots::None;
-        }
-        let (h, k) = (h.to_f64(), k.to_f64());
-        let q = -(h + discriminant.sqrt().copysign(h));
-        let h_bound = 8.0 * U * (a.to_f64() * size).sqrt();
-        let is_certain = bound <= RELATIVE_ERROR * discriminant
-            && h_bound <= RELATIVE_ERROR * q.abs()
-            && 16.0 * U * size <= RELATIVE_ERROR * k.abs();
-        if is_certain { in_order(q / a.to_f64(), k / q) } else { self.roots_exactly(ray) }
+        Line { w, d, a: dot(d, d), h: dot(w, d), ww: dot(w, w), rr: radius * radius }
     }
 
     fn roots_exactly(&self, ray: &SphereRay) -> Roots {
@@ -155,19 +170,46 @@ impl Sphere {
         if q == 0.0 { Roots::Two([0.0; 2]) } else { in_order(q / a, k / q) }
     }
 
+    /// Where the line of the ray meets the closed surface, in their order along it, decided exactly.
+    #[inline(always)]
+    pub(super) fn meetings(&self, ray: &SphereRay) -> Option<[f64; 2]> {
+        match self.roots(ray) {
+            Roots::None => None,
+            Roots::Two(roots) => Some(roots),
+            Roots::Uncertain => match self.roots_slowly(ray) {
+                Roots::Two(roots) => Some(roots),
+                Roots::None | Roots::Uncertain => None,
+            },
+        }
+    }
+
     /// The closed surface against the closed interval, decided exactly; `t` within 0.51 ulp.
     #[inline(always)]
     pub(crate) fn hit(&self, ray: &SphereRay, interval: Interval) -> Option<TriangleHit> {
-        let roots = match self.roots(ray) {
-            Roots::None => return None,
-            Roots::Two(roots) => roots,
-            Roots::Uncertain => match self.roots_slowly(ray) {
-                Roots::Two(roots) => roots,
-                Roots::None | Roots::Uncertain => return None,
-            },
-        };
         let is_hit = |t: f64| interval.contains(t as f32) && (t as f32).is_finite();
-        roots.into_iter().find(|&t| is_hit(t)).map(|t| TriangleHit { t: t as f32, u: 0.0, v: 0.0 })
+        self.meetings(ray)?.into_iter().find(|&t| is_hit(t)).map(|t| TriangleHit { t: t as f32, u: 0.0, v: 0.0 })
+    }
+}
+
+/// A line seen from the centre, in twice the precision of `f64`.
+pub(super) struct Line {
+    pub(super) w: [DoubleDouble; 3],
+    pub(super) d: [DoubleDouble; 3],
+    /// `d.d`, `w.d`, `w.w` and `r^2`.
+    pub(super) a: DoubleDouble,
+    pub(super) h: DoubleDouble,
+    ww: DoubleDouble,
+    rr: DoubleDouble,
+}
+
+impl Line {
+    pub(super) fn discriminant(&self) -> DoubleDouble {
+        self.h * self.h - self.a * (self.ww - self.rr)
+    }
+
+    /// What errors are relative to.
+    pub(super) fn size(&self) -> f64 {
+        self.ww.to_f64() + self.rr.to_f64()
     }
 }
 

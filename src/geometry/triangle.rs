@@ -25,6 +25,10 @@ impl Triangle {
         self.axes.map(|row| row[corner])
     }
 
+    pub(crate) fn vertices(&self) -> [[f32; 3]; 3] {
+        [self.vertex(0), self.vertex(1), self.vertex(2)]
+    }
+
     pub(crate) fn bounds(&self) -> Aabb {
         let [a, b, c] = std::array::from_fn(|corner| Vec3::from_array(self.vertex(corner)));
         Aabb { lower: a.min(b).min(c), upper: a.max(b).max(c) }
@@ -71,6 +75,49 @@ impl Triangle {
         })
     }
 
+    /// As [`Triangle::normal`] in `f64`, with a bound on the error of each component, at most 2^-33 of the largest one.
+    ///
+    /// A component is the difference of two products: three roundings in each and one of its own, a relative error of four;
+    /// twice that, so that it covers a few more of what is done with it.
+    pub(super) fn certain_normal(&self) -> (DVec3, f64) {
+        const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 33) as f64;
+        let edges = |axis: usize| {
+            let [a, b, c] = self.axes[axis].map(f64::from);
+            (b - a, c - a)
+        };
+        let (x, y, z) = (edges(0), edges(1), edges(2));
+        let products = |p: (f64, f64), q: (f64, f64)| (p.0 * q.1, q.0 * p.1);
+        let terms = [products(y, z), products(z, x), products(x, y)];
+        let normal = DVec3::from_array(terms.map(|(first, second)| first - second));
+        let size = terms.iter().fold(0.0, |most: f64, (first, second)| most.max(first.abs() + second.abs()));
+        let bound = 4.0 * f64::EPSILON * size;
+        if bound <= RELATIVE_ERROR * normal.abs().max_element() {
+            return (normal, bound);
+        }
+        let normal = DVec3::from_array(self.exact_normal().map(|component| component.to_f64()));
+        (normal, 4.0 * f64::EPSILON * normal.abs().max_element())
+    }
+
+    #[cold]
+    fn exact_normal(&self) -> [Expansion; 3] {
+        let [x, y, z] = self.axes.map(|[a, b, c]| (Expansion::difference(b, a), Expansion::difference(c, a)));
+        let minor = |p: &(Expansion, Expansion), q: &(Expansion, Expansion)| &p.0 * &q.1 - &q.0 * &p.1;
+        [minor(&y, &z), minor(&z, &x), minor(&x, &y)]
+    }
+
+    /// To which side of the plane a direction leads, exactly; as [`Triangle::side_of_point`]. Takes what
+    /// [`Triangle::certain_normal`] gives.
+    pub(super) fn side_of_direction(&self, (normal, bound): (DVec3, f64), direction: Vec3) -> f64 {
+        let d = direction.as_dvec3();
+        let along = normal.dot(d);
+        if along.abs() > 2.0 * bound * d.abs().element_sum() {
+            return along;
+        }
+        let [x, y, z] = self.exact_normal();
+        let [dx, dy, dz] = direction.to_array().map(|d| Expansion::difference(d, 0.0));
+        (&x * &dx + &y * &dy + &z * &dz).to_f64()
+    }
+
     /// Whether each of these vertices is at the place of one of those of the other.
     pub(crate) fn corners_are_among(&self, these: [bool; 3], other: &Self, those: [bool; 3]) -> bool {
         let is_there = |at: [f32; 3]| (0..3).any(|corner| those[corner] && other.vertex(corner) == at);
@@ -85,14 +132,19 @@ impl Triangle {
         })
     }
 
-    /// Exactly (Shewchuk 1997: orient3d).
+    /// Exactly.
     pub(crate) fn lies_in_plane_of(&self, other: &Self) -> bool {
-        let point = |triangle: &Self, corner: usize| {
-            let [x, y, z] = triangle.vertex(corner).map(widen);
+        (0..3).all(|corner| other.side_of_point(self.vertex(corner)) == 0.0)
+    }
+
+    /// On which side of the plane a point is: above 0 where the normal points, below, or 0 in the plane. Exactly (Shewchuk
+    /// 1997: orient3d).
+    pub(super) fn side_of_point(&self, point: [f32; 3]) -> f64 {
+        let [a, b, c, point] = [self.vertex(0), self.vertex(1), self.vertex(2), point].map(|point| {
+            let [x, y, z] = point.map(widen);
             Coord3D { x, y, z }
-        };
-        let [a, b, c] = std::array::from_fn(|corner| point(other, corner));
-        (0..3).all(|corner| robust::orient3d(a, b, c, point(self, corner)) == 0.0)
+        });
+        -robust::orient3d(a, b, c, point)
     }
 
     /// Six times the volume between the triangle and the point, `a . (b x c)` of the vertices relative to the point:

@@ -180,6 +180,13 @@ impl TriangleRay {
         self.hit::<P>(triangle, interval)
     }
 
+    /// The weights that decide in `f32`, where they take the triangle for hit: each rounded once.
+    #[cold]
+    pub(super) fn deciding_weights(&self, triangle: &Triangle) -> Option<[f64; 3]> {
+        let (x, y, _) = self.shear(&self.corners(triangle));
+        sheared_weights(&x, &y).filter(|weights| weights.iter().sum::<f64>().is_finite())
+    }
+
     /// Relative to the origin, so that the ray is the axis of z.
     #[inline(always)]
     fn shear(&self, corners: &Corners) -> ([f32; 3], [f32; 3], [f32; 3]) {

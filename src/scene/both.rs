@@ -3,7 +3,7 @@
 
 use super::Scene;
 use super::query::{Find, Kernel};
-use crate::accel::{Accel, AnyAccel, ClosestHit, Primitive, Query, Surface, SurfacePoint, Tally};
+use crate::accel::{Accel, AnyAccel, AnySurface, ClosestHit, Primitive, Query, Surface, Tally};
 use crate::geometry::{PrecisionMode, Ray, Sphere, Triangle};
 
 pub(super) struct Both<'a> {
@@ -20,13 +20,13 @@ impl Both<'_> {
 }
 
 impl Accel for Both<'_> {
-    type Found = SurfacePoint;
+    type Found = AnySurface;
 
     #[inline(always)]
     fn query<Q: Query, P: PrecisionMode, R>(
         &self,
         ray: impl Into<Ray>,
-        then: impl FnOnce(Option<ClosestHit<SurfacePoint>>, Q::Tally) -> R,
+        then: impl FnOnce(Option<ClosestHit<AnySurface>>, Q::Tally) -> R,
     ) -> R {
         let ray = ray.into();
         let (first, first_tally) = self.find::<Q, _>(ray, self.triangles);
@@ -44,7 +44,7 @@ impl Accel for Both<'_> {
     }
 }
 
-fn better(first: ClosestHit<SurfacePoint>, second: ClosestHit<SurfacePoint>) -> ClosestHit<SurfacePoint> {
+fn better(first: ClosestHit<AnySurface>, second: ClosestHit<AnySurface>) -> ClosestHit<AnySurface> {
     let is_second = second.t < first.t || (second.t == first.t && second.primitive.ids() < first.primitive.ids());
     if is_second { second } else { first }
 }

@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 use super::builder::Geometry;
 use super::flatten::{Balls, Flat, Meshes, flatten};
 use super::{BuildError, BuildOptions, Content, Scene, threads};
-use crate::accel::{self, AnyAccel, BuildContext, Plan, PrimitiveSource, Shape, Stats, Structure, Watch};
+use crate::accel::{self, AnyAccel, BuildContext, Places, Plan, PrimitiveSource, Shape, Stats, Structure, Watch};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
@@ -77,7 +77,8 @@ fn build_with(
         sah_cost: shapes.iter().map(|shape| shape.sah_cost).sum(),
         sphere_count: (balls.count() - skipped_spheres) as u64,
     };
-    Ok(Scene { content, precision: options.precision, isa, bounds, stats })
+    let (triangle_places, sphere_places) = (Places::default(), Places::default());
+    Ok(Scene { content, precision: options.precision, isa, bounds, stats, triangle_places, sphere_places })
 }
 
 /// One kind's structure; its shape is appended to `shapes`.

@@ -1,8 +1,8 @@
-//! Why there is no scene.
+//! Why there is no scene, or no point of it.
 
 use thiserror::Error;
 
-use crate::accel::BuildFailure;
+use crate::accel::{BuildFailure, OutOfMemory};
 
 /// Each variant says the cause, its fields the values; its text is one sentence.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -59,5 +59,37 @@ impl From<BuildFailure> for BuildError {
             BuildFailure::TooManyTriangles { count, limit } => Self::TooManyInScene { what: "triangles", count, limit },
             BuildFailure::OutOfMemory { bytes } => Self::OutOfMemory { bytes },
         }
+    }
+}
+
+/// Why there is no point of a surface, or no origin to leave it from; as [`BuildError`].
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the texts say it, and the fields are named in them")]
+pub enum SurfaceError {
+    #[error("hit is a miss, and names no surface")]
+    Miss,
+
+    #[error("ray is not valid, so that it hits nothing")]
+    InvalidRay,
+
+    #[error("geometry {geometry_id}, primitive {primitive_id}: the scene has none that a ray could hit")]
+    NotInScene { geometry_id: u32, primitive_id: u32 },
+
+    #[error("geometry {geometry_id}, primitive {primitive_id}: the ray passes it, so hit is not this ray's")]
+    Passed { geometry_id: u32, primitive_id: u32 },
+
+    #[error("direction ({}, {}, {}) is not finite, or zero", direction[0], direction[1], direction[2])]
+    NoDirection { direction: [f32; 3] },
+
+    #[error("point is not as gnomon_surface_point gives it, or lies where floats end")]
+    NoOrigin,
+
+    #[error("the allocation of {bytes} bytes failed")]
+    OutOfMemory { bytes: usize },
+}
+
+impl From<OutOfMemory> for SurfaceError {
+    fn from(OutOfMemory { bytes }: OutOfMemory) -> Self {
+        Self::OutOfMemory { bytes }
     }
 }

@@ -8,14 +8,16 @@ mod error;
 mod flatten;
 mod options;
 mod query;
+mod surface_point;
 mod threads;
 mod watched_build;
 
 pub use builder::SceneBuilder;
-pub use error::BuildError;
+pub use error::{BuildError, SurfaceError};
 pub use options::{BuildOptions, InvalidTriangles};
+pub use surface_point::SurfacePoint;
 
-use crate::accel::{AnyAccel, Precision, Stats};
+use crate::accel::{AnyAccel, Places, Precision, Stats};
 use crate::geometry::{Aabb, Sphere, Triangle};
 use crate::simd::DetectedIsa;
 
@@ -26,6 +28,8 @@ pub struct Scene {
     isa: DetectedIsa,
     bounds: Aabb,
     stats: Stats,
+    triangle_places: Places,
+    sphere_places: Places,
 }
 
 /// One structure for each kind of primitive that there is, so that a kernel knows one kind.
@@ -41,8 +45,9 @@ impl Scene {
         self.bounds
     }
 
-    /// What the build made.
-    pub fn stats(&self) -> &Stats {
-        &self.stats
+    /// What the build made, and what the scene holds now.
+    pub fn stats(&self) -> Stats {
+        let place_bytes = self.triangle_places.bytes() + self.sphere_places.bytes();
+        Stats { bytes: self.stats.bytes + place_bytes as u64, ..self.stats }
     }
 }

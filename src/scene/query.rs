@@ -5,8 +5,8 @@ use std::marker::PhantomData;
 use super::both::Both;
 use super::{Content, Scene};
 use crate::accel::{
-    Accel, AnyAccel, AnyHit, Closest, ClosestHit, Counted, LeafForm, Precision, Primitive, Query, RayCounts, Surface,
-    SurfacePoint, WideBvh,
+    Accel, AnyAccel, AnyHit, AnySurface, Closest, ClosestHit, Counted, LeafForm, Precision, Primitive, Query,
+    RayCounts, Surface, WideBvh,
 };
 use crate::geometry::{Accurate, Exact, Fast, Hit, INVALID_ID, PrecisionMode, Ray, Sphere, Triangle};
 use crate::simd::DetectedIsa;
@@ -224,7 +224,7 @@ impl<Q> Find<Q> {
 }
 
 impl<Q: Query> Kernel for Find<Q> {
-    type Output = (Option<ClosestHit<SurfacePoint>>, Q::Tally);
+    type Output = (Option<ClosestHit<AnySurface>>, Q::Tally);
 
     #[inline(always)]
     fn run<A: Accel + Sync, P: PrecisionMode>(self, accel: &A) -> Self::Output {

@@ -57,6 +57,11 @@ impl<T: Primitive> BspTree<T> {
         Ok(Self { tree, tolerance })
     }
 
+    /// Each once.
+    pub(super) fn primitives(&self) -> &[T] {
+        &self.tree.primitives
+    }
+
     pub(crate) fn shape(&self) -> Shape {
         self.tree.shape()
     }

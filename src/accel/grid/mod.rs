@@ -71,6 +71,11 @@ impl<T: Primitive> Grid<T> {
         Ok(grid)
     }
 
+    /// Each once.
+    pub(super) fn primitives(&self) -> &[T] {
+        &self.primitives
+    }
+
     /// A cell counts as a leaf.
     pub(crate) fn shape(&self) -> Shape {
         let cell_count = self.lattice.cell_count();

@@ -44,6 +44,11 @@ impl<T: Primitive> KdTree<T> {
         Ok(Self { tree })
     }
 
+    /// Each once.
+    pub(super) fn primitives(&self) -> &[T] {
+        &self.tree.primitives
+    }
+
     pub(crate) fn shape(&self) -> Shape {
         self.tree.shape()
     }

@@ -70,6 +70,11 @@ impl<T: Primitive> Octree<T> {
         Ok(octree)
     }
 
+    /// Each once.
+    pub(super) fn primitives(&self) -> &[T] {
+        &self.primitives
+    }
+
     pub(crate) fn shape(&self) -> Shape {
         Shape {
             reference_count: self.listed.len(),

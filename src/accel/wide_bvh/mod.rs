@@ -96,6 +96,27 @@ impl<F: LeafForm> WideBvh<F> {
         size_of_val(self.nodes.as_slice()) + self.leaves.bytes()
     }
 
+    /// Each primitive's ids, with a number by which [`WideBvh::at_place`] finds it: that of its leaf.
+    pub(super) fn for_each_place(&self, mut visit: impl FnMut(u32, (u32, u32))) {
+        let below_root = self.nodes.iter().flat_map(WideNode::children);
+        for leaf in std::iter::once(self.root).chain(below_root).filter(|child| child.is_leaf()) {
+            for primitive in self.primitives(leaf) {
+                visit(leaf.bits(), primitive.ids());
+            }
+        }
+    }
+
+    /// The primitive of the leaf that has the ids.
+    pub(super) fn at_place(&self, place: u32, ids: (u32, u32)) -> Option<F::Primitive> {
+        self.primitives(Child::from_bits(place)).find(|primitive| primitive.ids() == ids)
+    }
+
+    /// With their own ids.
+    fn primitives(&self, leaf: Child) -> impl Iterator<Item = F::Primitive> {
+        let leaf = leaf.triangles();
+        (0..leaf.1).map(move |lane| self.leaves.with_own_ids(self.leaves.primitive(leaf, lane)))
+    }
+
     pub(crate) fn shape(&self) -> Shape {
         Shape {
             reference_count: self.leaves.primitive_count(),

@@ -81,6 +81,12 @@ impl WideNode {
         self.children.map(Child::bits)
     }
 
+    /// Those that are there.
+    pub(super) fn children(&self) -> impl Iterator<Item = Child> {
+        let [lower, upper] = &self.planes[0];
+        (0..LANES).filter(|&slot| lower[slot] <= upper[slot]).map(|slot| self.children[slot])
+    }
+
     pub(super) fn set(&mut self, slot: usize, planes: &[[f32; 2]; 3], child: Child) {
         for (axis, [lower, upper]) in planes.iter().enumerate() {
             self.planes[axis][0][slot] = *lower;

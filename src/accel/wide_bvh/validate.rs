@@ -98,11 +98,6 @@ impl<F: LeafForm> WideBvh<F> {
         }
         Ok(())
     }
-
-    fn primitives(&self, child: Child) -> impl Iterator<Item = F::Primitive> {
-        let leaf = child.triangles();
-        (0..leaf.1).map(move |lane| self.leaves.primitive(leaf, lane))
-    }
 }
 
 /// The points that divide the edges and the inside evenly.
