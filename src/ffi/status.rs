@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::ffi::{CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use crate::accel::OutOfMemory;
 use crate::scene::BuildError;
 
 /// How a call ended: one of the `GNOMON_OK` and `GNOMON_ERROR_*` numbers. They never change their meaning; a later
@@ -52,6 +53,12 @@ impl From<BuildError> for Failure {
             BuildError::Threads(_) | BuildError::Internal(_) => GNOMON_ERROR_INTERNAL,
         };
         Self { status, message: error.to_string() }
+    }
+}
+
+impl From<OutOfMemory> for Failure {
+    fn from(error: OutOfMemory) -> Self {
+        Self { status: GNOMON_ERROR_OUT_OF_MEMORY, message: error.to_string() }
     }
 }
 

@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 use super::builder::Geometry;
 use super::flatten::{Balls, Flat, Meshes, flatten};
 use super::{BuildError, BuildOptions, Content, Scene, threads};
-use crate::accel::{self, AnyAccel, BuildContext, Plan, PrimitiveSource, Shape, Stats, Structure, Watch};
+use crate::accel::{self, AnyAccel, BuildContext, Copies, Plan, PrimitiveSource, Shape, Stats, Structure, Watch};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
@@ -55,6 +55,7 @@ fn build_with(
     } else {
         Content::Triangles(build_part(plan, of_meshes, &meshes, context, &mut shapes)?)
     };
+    let copies = Copies::new(context.take_copies()?);
     let total = |of: fn(&Shape) -> usize| shapes.iter().map(of).sum::<usize>() as u64;
     // Only the wide BVH has kernels beyond the scalar one.
     let isa = if structure == Structure::WideBvh { options.isa } else { Isa::Scalar }.resolve();
@@ -69,7 +70,7 @@ fn build_with(
         structure,
         precision: options.precision,
         isa: isa.into(),
-        bytes: node_bytes + leaf_bytes + size_of::<Scene>() as u64,
+        bytes: node_bytes + leaf_bytes + (copies.bytes() + size_of::<Scene>()) as u64,
         node_bytes,
         leaf_bytes,
         peak_build_bytes: context.peak_bytes() as u64,
@@ -77,7 +78,7 @@ fn build_with(
         sah_cost: shapes.iter().map(|shape| shape.sah_cost).sum(),
         sphere_count: (balls.count() - skipped_spheres) as u64,
     };
-    Ok(Scene { content, precision: options.precision, isa, bounds, stats })
+    Ok(Scene { content, copies, precision: options.precision, isa, bounds, stats })
 }
 
 /// One kind's structure; its shape is appended to `shapes`.

@@ -1,5 +1,6 @@
 //! From a caller's meshes and spheres to an immutable scene that answers queries.
 
+mod all_hits;
 mod batch;
 mod both;
 mod build;
@@ -15,13 +16,14 @@ pub use builder::SceneBuilder;
 pub use error::BuildError;
 pub use options::{BuildOptions, InvalidTriangles};
 
-use crate::accel::{AnyAccel, Precision, Stats};
+use crate::accel::{AnyAccel, Copies, Precision, Stats};
 use crate::geometry::{Aabb, Sphere, Triangle};
 use crate::simd::DetectedIsa;
 
 /// An immutable scene; any number of threads may query it.
 pub struct Scene {
     content: Content,
+    copies: Copies,
     precision: Precision,
     isa: DetectedIsa,
     bounds: Aabb,

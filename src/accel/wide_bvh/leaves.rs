@@ -174,9 +174,15 @@ impl<F: LeafForm> Leaves<F> {
     /// The hit with its primitive's own ids.
     #[inline(always)]
     pub(super) fn resolve(&self, hit: ClosestHit<F::Primitive>) -> ClosestHit<F::Primitive> {
-        let (_, joined) = hit.primitive.ids();
+        ClosestHit { primitive: self.with_own_ids(hit.primitive), ..hit }
+    }
+
+    /// What [`LeafForm::primitive`] gave, with its own ids.
+    #[inline(always)]
+    pub(super) fn with_own_ids(&self, primitive: F::Primitive) -> F::Primitive {
+        let (_, joined) = primitive.ids();
         let (geometry_id, primitive_id) = self.ids.separate(joined);
-        ClosestHit { primitive: hit.primitive.with_ids(geometry_id, primitive_id), ..hit }
+        primitive.with_ids(geometry_id, primitive_id)
     }
 }
 
