@@ -20,7 +20,7 @@ mod memory;
 mod scene;
 mod simd;
 
-pub use accel::{Precision, Quality, RayCounts, Stats, Structure};
+pub use accel::{OutOfMemory, Precision, Quality, RayCounts, Stats, Structure};
 pub use geometry::{
     Aabb, Hit, INVALID_ID, IndexBytes, IndexView, PositionView, Ray, SphereView, TriangleView, span_bytes,
 };

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::morton::Curve;
 use super::reference::{PrimitiveSource, Reference};
-use super::{BuildContext, BuildFailure, Primitive};
+use super::{BuildContext, BuildFailure, Copied, Primitive};
 use crate::geometry::Aabb;
 
 /// Bits of a Morton code for each axis.
@@ -47,7 +47,14 @@ pub(super) fn gather_along_curve<S: PrimitiveSource>(
     context.advance(count)?;
 
     let shape = |place: &Place| references[place.index as usize].primitive(source).shape();
-    places.dedup_by(|next, kept| next.key == kept.key && shape(next) == shape(kept));
+    places.dedup_by(|next, kept| {
+        let is_copy = next.key == kept.key && shape(next) == shape(kept);
+        if is_copy {
+            let [stored, ids] = [kept, next].map(|place| references[place.index as usize].ids());
+            context.note_copy(Copied { stored, ids });
+        }
+        is_copy
+    });
     let mut primitives = context.reserve(places.len())?;
     let primitive = |(): &mut (), at: u32| references[places[at as usize].index as usize].primitive(source);
     context.collect_with(&mut primitives, places.len() as u32, |_| (), primitive);

@@ -1,6 +1,6 @@
 //! No structure: every primitive is asked. The fastest for a handful, and the answer that the others are held against.
 
-use super::leaf::{ClosestHit, Query, test_each};
+use super::leaf::{Kept, Query, test_each};
 use super::stats::Shape;
 use super::tally::Tally;
 use super::{BuildContext, BuildFailure, Primitive, Walk};
@@ -42,10 +42,15 @@ impl<T: Primitive> Walk for BruteForce<T> {
     }
 
     #[inline(never)]
-    fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
+    fn walk<Q: Query, P: PrecisionMode, K: Kept<T>>(
+        &self,
+        ray: &Ray,
+        seed: K::Seed,
+        tally: &mut Q::Tally,
+    ) -> Option<K> {
         tally.test_primitives(self.primitives.len());
-        let mut best = ClosestHit::none(ray);
-        test_each::<Q, P, T>(&self.primitives, &T::make_ready(ray), ray.t_min, &mut best);
-        best.found()
+        let mut kept = K::begin(seed, ray);
+        test_each::<Q, P, T, K>(&self.primitives, &T::make_ready(ray), ray.t_min, &mut kept);
+        kept.found()
     }
 }

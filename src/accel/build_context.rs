@@ -1,10 +1,12 @@
 //! What every builder needs beside its triangles: threads, a limit on memory, and somebody who watches.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
+use super::copies::Copied;
 use crate::memory::prefer_huge_pages;
 use crate::simd::{DetectedIsa, Isa, Simd, SimdKernel};
 
@@ -60,11 +62,20 @@ pub(crate) struct BuildContext<'a> {
     peak: AtomicUsize,
     watch: &'a Watch,
     isa: DetectedIsa,
+    copies: Mutex<Result<Vec<Copied>, BuildFailure>>,
 }
 
 impl<'a> BuildContext<'a> {
     pub(crate) fn new(pool: Option<&'a ThreadPool>, limit: Option<usize>, isa: Isa, watch: &'a Watch) -> Self {
-        Self { pool, limit, held: AtomicUsize::new(0), peak: AtomicUsize::new(0), watch, isa: isa.resolve() }
+        Self {
+            pool,
+            limit,
+            held: AtomicUsize::new(0),
+            peak: AtomicUsize::new(0),
+            watch,
+            isa: isa.resolve(),
+            copies: Mutex::new(Ok(Vec::new())),
+        }
     }
 
     /// Runs a kernel on the build's instruction set. Builders use no operation that differs between them, so that they
@@ -206,6 +217,35 @@ impl<'a> BuildContext<'a> {
     /// Frees what [`BuildContext::reserve`] gave.
     pub(crate) fn release<T>(&self, vector: Vec<T>) {
         self.held.fetch_sub(vector.capacity() * size_of::<T>(), Ordering::Relaxed);
+    }
+
+    /// Notes that a primitive is not stored, at least in one place, because another one is the same to the bit. A failure
+    /// shows when they are taken.
+    pub(crate) fn note_copy(&self, copy: Copied) {
+        let mut noted = self.copies.lock().expect("noting does not panic");
+        if let Ok(copies) = &mut *noted
+            && let Err(failure) = self.append_copy(copies, copy)
+        {
+            *noted = Err(failure);
+        }
+    }
+
+    fn append_copy(&self, copies: &mut Vec<Copied>, copy: Copied) -> Result<(), BuildFailure> {
+        if copies.len() == copies.capacity() {
+            // One may be noted in many places.
+            copies.sort_unstable();
+            copies.dedup();
+            if 2 * copies.len() >= copies.capacity() {
+                self.make_room(copies, 1)?;
+            }
+        }
+        copies.push(copy);
+        Ok(())
+    }
+
+    /// All that were noted.
+    pub(crate) fn take_copies(&self) -> Result<Vec<Copied>, BuildFailure> {
+        std::mem::replace(&mut *self.copies.lock().expect("noting does not panic"), Ok(Vec::new()))
     }
 
     pub(crate) fn peak_bytes(&self) -> usize {

@@ -1,4 +1,4 @@
-//! What queries look for, the order in which hits win, and a leaf tested primitive by primitive.
+//! What queries look for and keep, the order in which hits win, and a leaf tested primitive by primitive.
 
 use super::primitive::{AnySurface, Primitive, Surface};
 use super::tally::{RayCounts, Tally};
@@ -21,6 +21,9 @@ pub(crate) struct AnyHit;
 /// As [`Closest`], and what finding it took.
 pub(crate) struct Counted;
 
+/// All that there are.
+pub(crate) struct Every;
+
 impl Query for Closest {
     const FIRST_HIT_ENDS: bool = false;
     type Tally = ();
@@ -34,6 +37,29 @@ impl Query for AnyHit {
 impl Query for Counted {
     const FIRST_HIT_ENDS: bool = false;
     type Tally = RayCounts;
+}
+
+impl Query for Every {
+    const FIRST_HIT_ENDS: bool = false;
+    type Tally = ();
+}
+
+/// What a walk keeps of what it finds.
+pub(crate) trait Kept<T: Primitive>: Sized {
+    /// What it is made of.
+    type Seed;
+
+    /// Nothing yet.
+    fn begin(seed: Self::Seed, ray: &Ray) -> Self;
+
+    /// Beyond this the walk need not look.
+    fn t_max(&self) -> f32;
+
+    /// Tests a primitive. True ends the walk.
+    fn test<Q: Query, P: PrecisionMode>(&mut self, primitive: &T, ray: &T::Ray, t_min: f32) -> bool;
+
+    /// `None` where nothing was found.
+    fn found(self) -> Option<Self>;
 }
 
 /// The best hit so far.
@@ -84,19 +110,40 @@ impl<T: Primitive> ClosestHit<T> {
     }
 }
 
-/// Tests the primitives and keeps the best hit. True ends the query.
+/// The best hit alone.
+impl<T: Primitive> Kept<T> for ClosestHit<T> {
+    type Seed = ();
+
+    fn begin((): (), ray: &Ray) -> Self {
+        Self::none(ray)
+    }
+
+    #[inline(always)]
+    fn t_max(&self) -> f32 {
+        self.t
+    }
+
+    #[inline(always)]
+    fn test<Q: Query, P: PrecisionMode>(&mut self, primitive: &T, ray: &T::Ray, t_min: f32) -> bool {
+        let hit = primitive.hit::<P>(ray, Interval { t_min, t_max: self.t });
+        hit.is_some_and(|hit| self.improve::<P>(ray, &hit, primitive) && Q::FIRST_HIT_ENDS)
+    }
+
+    fn found(self) -> Option<Self> {
+        ClosestHit::found(self)
+    }
+}
+
+/// Tests the primitives one by one. True ends the query.
 #[inline(always)]
-pub(crate) fn test_each<'p, Q: Query, P: PrecisionMode, T: Primitive>(
+pub(crate) fn test_each<'p, Q: Query, P: PrecisionMode, T: Primitive, K: Kept<T>>(
     primitives: impl IntoIterator<Item = &'p T>,
     ray: &T::Ray,
     t_min: f32,
-    best: &mut ClosestHit<T>,
+    kept: &mut K,
 ) -> bool {
     for primitive in primitives {
-        if let Some(hit) = primitive.hit::<P>(ray, Interval { t_min, t_max: best.t })
-            && best.improve::<P>(ray, &hit, primitive)
-            && Q::FIRST_HIT_ENDS
-        {
+        if kept.test::<Q, P>(primitive, ray, t_min) {
             return true;
         }
     }

@@ -1,7 +1,7 @@
 //! Lists of primitives by number, where several cells list the same one.
 
 use super::Primitive;
-use super::leaf::{ClosestHit, Query, test_each};
+use super::leaf::{Kept, Query, test_each};
 use super::tally::Tally;
 use crate::geometry::PrecisionMode;
 
@@ -9,7 +9,7 @@ use crate::geometry::PrecisionMode;
 const PLACES: usize = 16;
 
 /// What a ray was tested against last, so that it is not at once tested again (Arnaldi, Priol, Bouatouch 1987; Amanatides and
-/// Woo 1987). That changes no answer: the same hit again would be no better.
+/// Woo 1987). That changes no answer: the same hit again changes nothing.
 pub(super) struct Mailbox([u32; PLACES]);
 
 impl Mailbox {
@@ -25,17 +25,17 @@ impl Mailbox {
 
 /// [`test_each`] for those of a list that are not in the mailbox.
 #[inline(never)]
-pub(super) fn test_listed<Q: Query, P: PrecisionMode, T: Primitive>(
+pub(super) fn test_listed<Q: Query, P: PrecisionMode, T: Primitive, K: Kept<T>>(
     list: &[u32],
     primitives: &[T],
     mailbox: &mut Mailbox,
     (ray, t_min): (&T::Ray, f32),
-    best: &mut ClosestHit<T>,
+    kept: &mut K,
     tally: &mut Q::Tally,
 ) -> bool {
     let untested = list.iter().filter(|&&number| mailbox.put(number)).map(|&number| {
         tally.test_primitives(1);
         &primitives[number as usize]
     });
-    test_each::<Q, P, T>(untested, ray, t_min, best)
+    test_each::<Q, P, T, K>(untested, ray, t_min, kept)
 }

@@ -3,6 +3,7 @@
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::any_accel::AnyAccel;
+use super::out_of_memory::OutOfMemory;
 use super::primitive::Primitive;
 
 /// The table of one structure's places, made when it is first asked for: other scenes pay nothing for it.
@@ -11,12 +12,6 @@ pub(crate) struct Places {
     table: OnceLock<Table>,
     /// Held by the thread that makes the table.
     making: Mutex<()>,
-}
-
-/// The allocator refused so many.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OutOfMemory {
-    pub(crate) bytes: usize,
 }
 
 impl Places {

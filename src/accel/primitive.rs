@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3};
 
 use super::wide_bvh::{ByAxis, Compact, LeafForm, Spheres};
 use crate::geometry::{
-    Aabb, INVALID_ID, Interval, Polygon, PrecisionMode, Ray, Sphere, SpherePart, SphereRay, Triangle, TriangleHit,
-    TriangleRay,
+    Aabb, Crossing, INVALID_ID, Interval, Polygon, PrecisionMode, Ray, Sphere, SpherePart, SphereRay, Triangle,
+    TriangleHit, TriangleRay,
 };
 
 /// What a hit tells about what it hit.
@@ -118,6 +118,12 @@ pub(crate) trait Primitive: Copy + Send + Sync + 'static {
     /// The first hit in the closed interval.
     fn hit<P: PrecisionMode>(&self, ray: &Self::Ray, interval: Interval) -> Option<TriangleHit>;
 
+    /// All hits in the closed interval, in their order; those with one `t` are one.
+    fn each_hit<P: PrecisionMode>(&self, ray: &Self::Ray, interval: Interval, then: impl FnMut(TriangleHit));
+
+    /// How the half-line from a point along +x crosses it; see [`Crossing`].
+    fn crossing(&self, point: [f32; 3]) -> Crossing;
+
     /// What there is to tell of the hit at `t`.
     fn surface(&self, ray: &Ray, t: f32) -> Self::Surface;
 
@@ -178,6 +184,15 @@ impl Primitive for Triangle {
     #[inline(always)]
     fn hit<P: PrecisionMode>(&self, ray: &TriangleRay, interval: Interval) -> Option<TriangleHit> {
         ray.hit::<P>(self, interval)
+    }
+
+    #[inline(always)]
+    fn each_hit<P: PrecisionMode>(&self, ray: &TriangleRay, interval: Interval, then: impl FnMut(TriangleHit)) {
+        ray.hit::<P>(self, interval).into_iter().for_each(then);
+    }
+
+    fn crossing(&self, point: [f32; 3]) -> Crossing {
+        Triangle::crossing(self, point)
     }
 
     #[inline(always)]
@@ -252,6 +267,15 @@ impl Primitive for Sphere {
     #[inline(always)]
     fn hit<P: PrecisionMode>(&self, ray: &SphereRay, interval: Interval) -> Option<TriangleHit> {
         Sphere::hit(self, ray, interval)
+    }
+
+    #[inline(always)]
+    fn each_hit<P: PrecisionMode>(&self, ray: &SphereRay, interval: Interval, then: impl FnMut(TriangleHit)) {
+        Sphere::each_hit(self, ray, interval, then);
+    }
+
+    fn crossing(&self, point: [f32; 3]) -> Crossing {
+        Sphere::crossing(self, point)
     }
 
     #[inline(always)]

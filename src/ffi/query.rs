@@ -1,6 +1,8 @@
-//! Queries: one ray, or many.
+//! Queries: one ray, or many; a point.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use glam::Vec3;
 
 use super::options::GnomonQueryOptions;
 use super::pointers::{Null, output, output_slice, required, slice};
@@ -146,6 +148,96 @@ pub unsafe extern "C-unwind" fn gnomon_occluded_n(
         // SAFETY: the caller's promise.
         let options = unsafe { GnomonQueryOptions::read(options) }?;
         scene.0.occluded_n(rays, occluded_out, options.thread_count);
+        Ok(())
+    })
+}
+
+/// The hits of a ray, as many as there is room for: those that come first, or first after one that is known.
+///
+/// They come in the order in which hits win: by `t`, then `geometry_id`, then `primitive_id`; in `GNOMON_PRECISION_EXACT` those
+/// whose `t` differ only before they are rounded keep the order of the exact ones. `hits_out` has room for `capacity` hits,
+/// and `count_out` gets how many are written: if fewer, there are no more; else call again with `&hits_out[capacity - 1]` as
+/// `after` for those that follow. NULL begins with what `gnomon_intersect` gives, to the bit. There is a hit just where
+/// `gnomon_occluded` is true.
+///
+/// Each triangle is there at most once, also where the ray passes an edge or a vertex that several share: then each of them
+/// that the ray hits is there. Triangles that are the same are each there. A sphere is there where the ray enters and where
+/// it leaves it, once where both have the same `t`. A ray that is not valid has no hits.
+///
+/// Crossings can be counted with this as long as no ray meets an edge: from inside of a closed mesh there is an odd number of
+/// hits up to `INFINITY`. But a ray through a shared edge may hit both triangles, though it passes one surface, and one that
+/// runs within a face hits nothing of it. `gnomon_contains_point` is right for every point.
+///
+/// `after` must be a hit of the same ray in the same scene. The call keeps 56 bytes for a hit, at most for three times as many
+/// as are asked for; with `after`, for all that have its `t`. Any number of threads may call this on one scene.
+///
+/// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer (`hits_out` may be NULL for a `capacity` of 0), an array that is
+/// not aligned for floats, or a capacity that no memory can hold; `GNOMON_ERROR_OUT_OF_MEMORY`. Nothing is written then.
+///
+/// # Safety
+/// `scene` is null or from `gnomon_scene_build`; `ray` and `after` are null or readable; `hits_out` is null or has room for
+/// `capacity` hits; `count_out` is null or writable, and not among the hits.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn gnomon_intersect_all(
+    scene: *const GnomonScene,
+    ray: *const GnomonRay,
+    after: *const GnomonHit,
+    capacity: usize,
+    hits_out: *mut GnomonHit,
+    count_out: *mut usize,
+) -> GnomonStatus {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let scene = unsafe { required(scene, "scene") }?;
+        // SAFETY: the caller's promise.
+        let ray = unsafe { required(ray, "ray") }?;
+        // A copy, because it may be one of those that are written over.
+        // SAFETY: the caller's promise; a Hit has a GnomonHit's layout.
+        let after = unsafe { after.cast::<Hit>().as_ref() }.copied();
+        // SAFETY: the caller's promise; as above.
+        let hits_out = unsafe { output_slice(hits_out.cast::<Hit>(), capacity, "hits_out") }?;
+        // SAFETY: the caller's promise.
+        let count_out = unsafe { output(count_out, "count_out") }?;
+        count_out.write(scene.0.intersect_all(&ray.into(), after.as_ref(), hits_out)?);
+        Ok(())
+    })
+}
+
+/// Whether a point is inside of closed meshes and spheres: whether a line that begins there leaves them an odd number of
+/// times.
+///
+/// Exact for every finite point, in every structure and precision, also where lines from it run through edges and vertices
+/// or along faces. A point on a triangle or a sphere counts as inside; one that is not finite is outside.
+///
+/// The triangles of the whole scene count as one surface. It is closed where each edge belongs to an even number of
+/// triangles, with the same end points to the bit (-0 is 0), in whichever meshes these are. How triangles are wound makes
+/// no difference. Where closed meshes or spheres overlap or are nested, what is inside of an even number of them is
+/// outside; triangles that are there twice cancel. Triangles of zero area do not count. If the surface is not
+/// closed, the answer is what the half-line towards +x crosses.
+///
+/// `point` has three floats (x, y, z); `inside_out` gets the answer. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null
+/// pointer; `GNOMON_ERROR_OUT_OF_MEMORY`. Any number of threads may call this on one scene.
+///
+/// Source: Edelsbrunner and Muecke 1990, "Simulation of simplicity: a technique to cope with degenerate cases in geometric
+/// algorithms", ACM TOG 9(1).
+///
+/// # Safety
+/// `scene` is null or from `gnomon_scene_build`; `point` is null or has three floats; `inside_out` is null or writable.
+/// cbindgen:ptrs-as-arrays=[[point;3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn gnomon_contains_point(
+    scene: *const GnomonScene,
+    point: *const f32,
+    inside_out: *mut bool,
+) -> GnomonStatus {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let scene = unsafe { required(scene, "scene") }?;
+        // SAFETY: the caller's promise.
+        let point = unsafe { slice(point, 3, "point") }?;
+        // SAFETY: the caller's promise.
+        let inside_out = unsafe { output(inside_out, "inside_out") }?;
+        inside_out.write(scene.0.contains_point(Vec3::new(point[0], point[1], point[2]))?);
         Ok(())
     })
 }

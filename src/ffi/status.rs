@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::ffi::{CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use crate::accel::OutOfMemory;
 use crate::scene::{BuildError, SurfaceError};
 
 /// How a call ended: one of the `GNOMON_OK` and `GNOMON_ERROR_*` numbers. They never change their meaning; a later
@@ -58,7 +59,7 @@ impl From<BuildError> for Failure {
 impl From<SurfaceError> for Failure {
     fn from(error: SurfaceError) -> Self {
         let status = match error {
-            SurfaceError::OutOfMemory { .. } => GNOMON_ERROR_OUT_OF_MEMORY,
+            SurfaceError::OutOfMemory(_) => GNOMON_ERROR_OUT_OF_MEMORY,
             SurfaceError::Miss
             | SurfaceError::InvalidRay
             | SurfaceError::NotInScene { .. }
@@ -67,6 +68,12 @@ impl From<SurfaceError> for Failure {
             | SurfaceError::NoOrigin => GNOMON_ERROR_INVALID_ARGUMENT,
         };
         Self { status, message: error.to_string() }
+    }
+}
+
+impl From<OutOfMemory> for Failure {
+    fn from(error: OutOfMemory) -> Self {
+        Self { status: GNOMON_ERROR_OUT_OF_MEMORY, message: error.to_string() }
     }
 }
 

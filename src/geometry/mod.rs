@@ -2,6 +2,7 @@
 
 mod aabb;
 mod clip;
+mod crossing;
 mod evaluation;
 mod evaluation_lanes;
 mod exact;
@@ -19,6 +20,7 @@ mod triangle_hit;
 pub use aabb::Aabb;
 pub(crate) use aabb::{ObliqueSlabs, SlabRay, band_distance};
 pub(crate) use clip::Polygon;
+pub(crate) use crossing::Crossing;
 pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};
 pub(crate) use hit_point::HitPoint;
 pub use mesh_view::{IndexBytes, IndexView, PositionView, SphereView, TriangleView, span_bytes};

@@ -2,8 +2,11 @@
 //! first one's answer.
 
 use super::Scene;
+use super::all_hits::{FirstHits, LookAround};
 use super::query::{Find, Kernel};
-use crate::accel::{Accel, AnyAccel, AnySurface, ClosestHit, Primitive, Query, Surface, Tally};
+use crate::accel::{
+    Accel, AnyAccel, AnySurface, Around, ClosestHit, Copies, OutOfMemory, Primitive, Query, SortedHits, Surface, Tally,
+};
 use crate::geometry::{PrecisionMode, Ray, Sphere, Triangle};
 
 pub(super) struct Both<'a> {
@@ -42,9 +45,31 @@ impl Accel for Both<'_> {
         };
         then(best, first_tally.plus(second_tally))
     }
+
+    fn all_hits<P: PrecisionMode>(&self, ray: &Ray, most: usize, _copies: &Copies) -> Result<SortedHits, OutOfMemory> {
+        let scene = self.scene;
+        let first = scene.dispatch_to(FirstHits { scene, ray, most }, self.triangles)?;
+        let t_max = if first.len() == most { first.last().map_or(ray.t_max, |last| last.t) } else { ray.t_max };
+        let second = scene.dispatch_to(FirstHits { scene, ray: &Ray { t_max, ..*ray }, most }, self.spheres)?;
+        let (mut first, mut second) = (first.into_iter().peekable(), second.into_iter().peekable());
+        let merged = std::iter::from_fn(|| match (first.peek(), second.peek()) {
+            (Some(a), Some(b)) if precedes(b, a) => second.next(),
+            (None, _) => second.next(),
+            _ => first.next(),
+        });
+        Ok(merged.take(most).collect())
+    }
+
+    fn look_around(&self, around: &mut Around) {
+        self.scene.dispatch_to(LookAround(around), self.triangles);
+        self.scene.dispatch_to(LookAround(around), self.spheres);
+    }
 }
 
 fn better(first: ClosestHit<AnySurface>, second: ClosestHit<AnySurface>) -> ClosestHit<AnySurface> {
-    let is_second = second.t < first.t || (second.t == first.t && second.primitive.ids() < first.primitive.ids());
-    if is_second { second } else { first }
+    if precedes(&second, &first) { second } else { first }
+}
+
+fn precedes(a: &ClosestHit<AnySurface>, b: &ClosestHit<AnySurface>) -> bool {
+    a.t < b.t || (a.t == b.t && a.primitive.ids() < b.primitive.ids())
 }

@@ -8,7 +8,9 @@ use arrayvec::ArrayVec;
 use super::builder::Geometry;
 use super::flatten::{Balls, Flat, Meshes, flatten};
 use super::{BuildError, BuildOptions, Content, Scene, threads};
-use crate::accel::{self, AnyAccel, BuildContext, Places, Plan, PrimitiveSource, Shape, Stats, Structure, Watch};
+use crate::accel::{
+    self, AnyAccel, BuildContext, Copies, Places, Plan, PrimitiveSource, Shape, Stats, Structure, Watch,
+};
 use crate::simd::Isa;
 
 pub(super) fn build(geometries: &[Arc<Geometry>], options: &BuildOptions, watch: &Watch) -> Result<Scene, BuildError> {
@@ -55,6 +57,7 @@ fn build_with(
     } else {
         Content::Triangles(build_part(plan, of_meshes, &meshes, context, &mut shapes)?)
     };
+    let copies = Copies::new(context.take_copies()?);
     let total = |of: fn(&Shape) -> usize| shapes.iter().map(of).sum::<usize>() as u64;
     // Only the wide BVH has kernels beyond the scalar one.
     let isa = if structure == Structure::WideBvh { options.isa } else { Isa::Scalar }.resolve();
@@ -69,7 +72,7 @@ fn build_with(
         structure,
         precision: options.precision,
         isa: isa.into(),
-        bytes: node_bytes + leaf_bytes + size_of::<Scene>() as u64,
+        bytes: node_bytes + leaf_bytes + (copies.bytes() + size_of::<Scene>()) as u64,
         node_bytes,
         leaf_bytes,
         peak_build_bytes: context.peak_bytes() as u64,
@@ -78,7 +81,7 @@ fn build_with(
         sphere_count: (balls.count() - skipped_spheres) as u64,
     };
     let (triangle_places, sphere_places) = (Places::default(), Places::default());
-    Ok(Scene { content, precision: options.precision, isa, bounds, stats, triangle_places, sphere_places })
+    Ok(Scene { content, copies, precision: options.precision, isa, bounds, stats, triangle_places, sphere_places })
 }
 
 /// One kind's structure; its shape is appended to `shapes`.

@@ -84,12 +84,6 @@ pub enum SurfaceError {
     #[error("point is not as gnomon_surface_point gives it, or lies where floats end")]
     NoOrigin,
 
-    #[error("the allocation of {bytes} bytes failed")]
-    OutOfMemory { bytes: usize },
-}
-
-impl From<OutOfMemory> for SurfaceError {
-    fn from(OutOfMemory { bytes }: OutOfMemory) -> Self {
-        Self::OutOfMemory { bytes }
-    }
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
 }

@@ -1,5 +1,6 @@
 //! From a caller's meshes and spheres to an immutable scene that answers queries.
 
+mod all_hits;
 mod batch;
 mod both;
 mod build;
@@ -17,13 +18,14 @@ pub use error::{BuildError, SurfaceError};
 pub use options::{BuildOptions, InvalidTriangles};
 pub use surface_point::SurfacePoint;
 
-use crate::accel::{AnyAccel, Places, Precision, Stats};
+use crate::accel::{AnyAccel, Copies, Places, Precision, Stats};
 use crate::geometry::{Aabb, Sphere, Triangle};
 use crate::simd::DetectedIsa;
 
 /// An immutable scene; any number of threads may query it.
 pub struct Scene {
     content: Content,
+    copies: Copies,
     precision: Precision,
     isa: DetectedIsa,
     bounds: Aabb,

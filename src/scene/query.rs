@@ -198,7 +198,7 @@ impl Question for Occlusion {
 }
 
 #[inline(always)]
-fn complete(found: ClosestHit<impl Surface>) -> Hit {
+pub(super) fn complete(found: ClosestHit<impl Surface>) -> Hit {
     let (geometry_id, primitive_id) = found.primitive.ids();
     Hit {
         t: found.t,

@@ -6,7 +6,7 @@ use crate::common::{CELLS_ON_WALLS, Mesh, Rng, ZERO_AREA_GEOMETRY, meshes, rays_
 use glam::Vec3;
 use gnomon::{BuildOptions, Hit, Isa, Precision, Quality, Ray, Scene, SceneBuilder, Structure};
 
-fn build(mesh: &Mesh, options: BuildOptions) -> Scene {
+pub(crate) fn build(mesh: &Mesh, options: BuildOptions) -> Scene {
     let mut builder = SceneBuilder::new();
     mesh.add_to(&mut builder);
     builder.build(&options).expect("the mesh is valid")
@@ -14,7 +14,7 @@ fn build(mesh: &Mesh, options: BuildOptions) -> Scene {
 
 /// Each structure in each quality and on each instruction set that makes a difference to it; the cap is no more than a
 /// cap, so on a small CPU some are the same.
-fn variants() -> Vec<BuildOptions> {
+pub(crate) fn variants() -> Vec<BuildOptions> {
     let of = |structure, quality, isa| BuildOptions { structure, quality, isa, ..BuildOptions::default() };
     let qualities = [Quality::Low, Quality::Medium, Quality::High];
     let scalar = [Structure::Bvh, Structure::KdTree, Structure::BspTree]
@@ -42,7 +42,7 @@ fn exact_variants() -> Vec<BuildOptions> {
 }
 
 /// Floats as bits, so that -0 and 0 differ, and a NaN would be seen.
-fn bits(hit: &Hit) -> [u32; 9] {
+pub(crate) fn bits(hit: &Hit) -> [u32; 9] {
     let [x, y, z] = hit.normal.to_array();
     [
         hit.t.to_bits(),
@@ -57,7 +57,7 @@ fn bits(hit: &Hit) -> [u32; 9] {
     ]
 }
 
-fn hexadecimal(ray: &Ray) -> String {
+pub(crate) fn hexadecimal(ray: &Ray) -> String {
     let words = [ray.origin.to_array(), ray.direction.to_array()].concat();
     let words: Vec<String> =
         words.iter().chain([&ray.t_min, &ray.t_max]).map(|f| format!("{:08x}", f.to_bits())).collect();

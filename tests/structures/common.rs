@@ -67,7 +67,7 @@ impl Mesh {
         }
     }
 
-    fn add_geometry(&self, triangles: &[[u32; 3]], builder: &mut SceneBuilder) {
+    pub(crate) fn add_geometry(&self, triangles: &[[u32; 3]], builder: &mut SceneBuilder) {
         let positions: Vec<u8> = self.vertices.iter().flat_map(|v| v.to_array()).flat_map(f32::to_ne_bytes).collect();
         let indices: Vec<u8> = triangles.iter().flatten().flat_map(|index| index.to_ne_bytes()).collect();
         let view = TriangleView {
@@ -93,7 +93,7 @@ impl Mesh {
     }
 }
 
-fn add_spheres(spheres: &[(Vec3, f32)], builder: &mut SceneBuilder) {
+pub(crate) fn add_spheres(spheres: &[(Vec3, f32)], builder: &mut SceneBuilder) {
     let floats = spheres.iter().flat_map(|(centre, radius)| [centre.x, centre.y, centre.z, *radius]);
     let bytes: Vec<u8> = floats.flat_map(f32::to_ne_bytes).collect();
     let (centres, radii) =

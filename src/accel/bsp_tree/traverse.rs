@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::BspTree;
 use super::directions::DIRECTIONS;
-use crate::accel::leaf::{ClosestHit, Query};
+use crate::accel::leaf::{Kept, Query};
 use crate::accel::space_tree::{ANY, Slope};
 use crate::accel::walk_ray::WalkRay;
 use crate::accel::{Primitive, Walk};
@@ -17,7 +17,12 @@ impl<T: Primitive> Walk for BspTree<T> {
     type Primitive = T;
 
     #[inline(never)]
-    fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
+    fn walk<Q: Query, P: PrecisionMode, K: Kept<T>>(
+        &self,
+        ray: &Ray,
+        seed: K::Seed,
+        tally: &mut Q::Tally,
+    ) -> Option<K> {
         let walk_ray = WalkRay::new(ray, &self.tree.bounds);
         let WalkRay { origin, direction, band, .. } = walk_ray;
         // Products of `f32`s are exact in `f64`. Their sums round by less than 2^-52 of the vectors' lengths, and so a
@@ -29,8 +34,9 @@ impl<T: Primitive> Walk for BspTree<T> {
         for (place, &normal) in slopes.iter_mut().zip(&DIRECTIONS) {
             *place = slope(normal);
         }
-        self.tree.walk::<Q, P>(
+        self.tree.walk::<Q, P, K>(
             ray,
+            seed,
             &walk_ray,
             |node| match node.kind() {
                 ANY => {

@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 
 use super::node::{MOST_LEVELS, Node};
 use crate::accel::reference::{Bounds8, PrimitiveSource, Reference};
-use crate::accel::{BuildContext, BuildFailure, Primitive};
+use crate::accel::{BuildContext, BuildFailure, Copied, Primitive};
 use crate::simd::{Scalar, Simd, SimdKernel};
 
 /// A binary tree in two parts: what lies below a few thousand references is a subtree of its own, built by one thread.
@@ -209,7 +209,7 @@ impl<R: SplitRule, T: PrimitiveSource> Builder<'_, R, T> {
         }
         if division.is_none() && !is_distinct {
             is_distinct = true;
-            count = drop_duplicates(&mut references[..count], self.source);
+            count = drop_duplicates(&mut references[..count], self.source, self.context);
             if count <= MOST_IN_SUBTREE {
                 return self.subtree(Part { references, count, bounds, level, is_distinct });
             }
@@ -227,8 +227,13 @@ impl<R: SplitRule, T: PrimitiveSource> Builder<'_, R, T> {
     fn subtree<'r>(&self, part: Part<'r>) -> Result<Branch<'r>, BuildFailure> {
         let count = part.count;
         let nodes = self.context.reserve(2 * part.references.len() - 1)?;
-        let (mut subtree, depth) =
-            self.context.vectorize(GrowSubtree { rule: self.rule, source: self.source, nodes, part });
+        let (mut subtree, depth) = self.context.vectorize(GrowSubtree {
+            rule: self.rule,
+            source: self.source,
+            context: self.context,
+            nodes,
+            part,
+        });
         self.context.shrink(&mut subtree.nodes);
         self.context.advance(count)?;
         Ok(Branch::Subtree { subtree, depth })
@@ -238,6 +243,7 @@ impl<R: SplitRule, T: PrimitiveSource> Builder<'_, R, T> {
 struct GrowSubtree<'a, 'r, R, T> {
     rule: &'a R,
     source: &'a T,
+    context: &'a BuildContext<'a>,
     /// Empty, with room for all.
     nodes: Vec<Node>,
     part: Part<'r>,
@@ -261,7 +267,8 @@ impl<'r, R: SplitRule, T: PrimitiveSource> SimdKernel for GrowSubtree<'_, 'r, R,
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        let Self { rule, source, mut nodes, part: Part { references, count, bounds, level, is_distinct } } = self;
+        let Self { rule, source, context, mut nodes, part: Part { references, count, bounds, level, is_distinct } } =
+            self;
         let mut scratch = R::Scratch::default();
         let mut waiting = ArrayVec::<Waiting, MOST_LEVELS>::new_const();
         let limit = references.len();
@@ -277,7 +284,7 @@ impl<'r, R: SplitRule, T: PrimitiveSource> SimdKernel for GrowSubtree<'_, 'r, R,
             if division.is_none() && end - begin > rule.most_in_leaf() {
                 if !is_distinct {
                     is_distinct = true;
-                    end = begin + drop_duplicates(&mut references[begin..end], source);
+                    end = begin + drop_duplicates(&mut references[begin..end], source, context);
                 }
                 if end - begin > rule.most_in_leaf() {
                     let split = halve(simd, &mut references[begin..end]);
@@ -312,7 +319,7 @@ impl<'r, R: SplitRule, T: PrimitiveSource> SimdKernel for GrowSubtree<'_, 'r, R,
 
 /// Keeps, of primitives that are the same to the bit, the one whose hits win. Returns how many are left, at the front.
 #[cold]
-fn drop_duplicates(references: &mut [Reference], source: &impl PrimitiveSource) -> usize {
+fn drop_duplicates(references: &mut [Reference], source: &impl PrimitiveSource, context: &BuildContext) -> usize {
     let shape = |reference: &Reference| reference.primitive(source).shape();
     references.sort_by_cached_key(|reference| (shape(reference), reference.ids()));
     let mut count = 1;
@@ -321,6 +328,7 @@ fn drop_duplicates(references: &mut [Reference], source: &impl PrimitiveSource) 
             references[count] = references[next];
             count += 1;
         } else {
+            context.note_copy(Copied { stored: references[count - 1].ids(), ids: references[next].ids() });
             // Their boxes differ where parts of them were cut off.
             let both = references[count - 1].bounds().union(Scalar, references[next].bounds());
             references[count - 1].set_bounds(&both);

@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 
 use super::Bvh;
 use super::node::{MOST_LEVELS, Node};
-use crate::accel::leaf::{ClosestHit, Query, test_each};
+use crate::accel::leaf::{Kept, Query, test_each};
 use crate::accel::tally::Tally;
 use crate::accel::{Primitive, Walk};
 use crate::geometry::{PrecisionMode, Ray, SlabRay};
@@ -27,12 +27,17 @@ impl<T: Primitive> Walk for Bvh<T> {
     type Primitive = T;
 
     #[inline(never)]
-    fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
+    fn walk<Q: Query, P: PrecisionMode, K: Kept<T>>(
+        &self,
+        ray: &Ray,
+        seed: K::Seed,
+        tally: &mut Q::Tally,
+    ) -> Option<K> {
         let slabs = SlabRay::new(ray, &self.bounds);
         let primitive_ray = T::make_ready(ray);
         let t_min = ray.t_min * slabs.time_scale;
         let mut t_max = ray.t_max * slabs.time_scale;
-        let mut best = ClosestHit::none(ray);
+        let mut kept = K::begin(seed, ray);
 
         let mut stack = ArrayVec::<Pending, MOST_LEVELS>::new_const();
         let mut node = Pending::new(&self.root, slabs.enter(&self.root.planes, t_min, t_max)?);
@@ -40,10 +45,10 @@ impl<T: Primitive> Walk for Bvh<T> {
             if node.count != 0 {
                 let primitives = &self.primitives[node.first as usize..][..node.count as usize];
                 tally.test_primitives(primitives.len());
-                if test_leaf::<Q, P, T>(primitives, &primitive_ray, ray.t_min, &mut best) {
+                if test_leaf::<Q, P, T, K>(primitives, &primitive_ray, ray.t_min, &mut kept) {
                     break;
                 }
-                t_max = best.t * slabs.time_scale;
+                t_max = kept.t_max() * slabs.time_scale;
             } else {
                 tally.visit_node();
                 let [left, right] = &self.pairs[node.first as usize].children;
@@ -70,23 +75,23 @@ impl<T: Primitive> Walk for Bvh<T> {
             }
             // A node that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
             node = loop {
-                let Some(pending) = stack.pop() else { return best.found() };
+                let Some(pending) = stack.pop() else { return kept.found() };
                 if pending.enter <= t_max {
                     break pending;
                 }
             };
         }
-        best.found()
+        kept.found()
     }
 }
 
 /// Out of line: inlined it takes registers from the box test, and a ray takes 12 % more instructions.
 #[inline(never)]
-fn test_leaf<Q: Query, P: PrecisionMode, T: Primitive>(
+fn test_leaf<Q: Query, P: PrecisionMode, T: Primitive, K: Kept<T>>(
     primitives: &[T],
     ray: &T::Ray,
     t_min: f32,
-    best: &mut ClosestHit<T>,
+    kept: &mut K,
 ) -> bool {
-    test_each::<Q, P, T>(primitives, ray, t_min, best)
+    test_each::<Q, P, T, K>(primitives, ray, t_min, kept)
 }

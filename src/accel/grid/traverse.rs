@@ -5,7 +5,7 @@ use glam::UVec3;
 use super::lattice::bit_of;
 use super::steps::{LatticeRay, Steps};
 use super::{BLOCK, Block, Grid};
-use crate::accel::leaf::{ClosestHit, Query, test_each};
+use crate::accel::leaf::{Kept, Query, test_each};
 use crate::accel::listed::{Mailbox, test_listed};
 use crate::accel::tally::Tally;
 use crate::accel::walk_ray::{Span, WalkRay};
@@ -16,14 +16,19 @@ impl<T: Primitive> Walk for Grid<T> {
     type Primitive = T;
 
     #[inline(never)]
-    fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
+    fn walk<Q: Query, P: PrecisionMode, K: Kept<T>>(
+        &self,
+        ray: &Ray,
+        seed: K::Seed,
+        tally: &mut Q::Tally,
+    ) -> Option<K> {
         let walk_ray = WalkRay::new(ray, &self.bounds);
         let span = walk_ray.span_in(&self.bounds, ray.t_min, ray.t_max)?;
-        let mut search = Search::<T, Q> {
+        let mut search = Search::<T, Q, K> {
             grid: self,
             ray: T::make_ready(ray),
             t_min: ray.t_min,
-            best: ClosestHit::none(ray),
+            kept: K::begin(seed, ray),
             mailbox: Mailbox::EMPTY,
             tally,
         };
@@ -34,25 +39,25 @@ impl<T: Primitive> Walk for Grid<T> {
         } else {
             search.pass_slices::<P>(&walk_ray, span);
         }
-        search.best.found()
+        search.kept.found()
     }
 }
 
-struct Search<'a, T: Primitive, Q: Query> {
+struct Search<'a, T: Primitive, Q: Query, K> {
     grid: &'a Grid<T>,
     ray: T::Ray,
     t_min: f32,
-    best: ClosestHit<T>,
+    kept: K,
     mailbox: Mailbox,
     tally: &'a mut Q::Tally,
 }
 
-impl<T: Primitive, Q: Query> Search<'_, T, Q> {
+impl<T: Primitive, Q: Query, K: Kept<T>> Search<'_, T, Q, K> {
     /// The hit at the best `t` so far, or a better one, is in a cell that the ray is in at that `t`: once it leaves one
     /// later, all are found; but at the same `t` the next one may hold an equal hit with a lower id.
     #[inline(always)]
     fn is_over(&self, end: f64) -> bool {
-        f64::from(self.best.t) < end
+        f64::from(self.kept.t_max()) < end
     }
 
     /// Through the blocks that the ray passes, and the cells of those that are not empty.
@@ -97,12 +102,12 @@ impl<T: Primitive, Q: Query> Search<'_, T, Q> {
         self.tally.step_cell();
         let list = self.grid.list(block, bit_of(cell));
         !list.is_empty()
-            && test_listed::<Q, P, T>(
+            && test_listed::<Q, P, T, K>(
                 list,
                 &self.grid.primitives,
                 &mut self.mailbox,
                 (&self.ray, self.t_min),
-                &mut self.best,
+                &mut self.kept,
                 self.tally,
             )
     }
@@ -111,7 +116,7 @@ impl<T: Primitive, Q: Query> Search<'_, T, Q> {
     #[cold]
     fn test_all<P: PrecisionMode>(&mut self) {
         self.tally.test_primitives(self.grid.primitives.len());
-        test_each::<Q, P, T>(&self.grid.primitives, &self.ray, self.t_min, &mut self.best);
+        test_each::<Q, P, T, K>(&self.grid.primitives, &self.ray, self.t_min, &mut self.kept);
     }
 
     /// Through the slices of cells across the axis along which the ray passes the most, in each to all cells that it
@@ -145,7 +150,7 @@ impl<T: Primitive, Q: Query> Search<'_, T, Q> {
                 end = span.end;
             }
             (begin, end) = (begin.max(span.begin), end.min(span.end));
-            if f64::from(self.best.t) < begin {
+            if f64::from(self.kept.t_max()) < begin {
                 return;
             }
             if begin > end {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::Octree;
 use super::cell::Cell;
 use super::node::{MOST_LEVELS, Node};
-use crate::accel::leaf::{ClosestHit, Query};
+use crate::accel::leaf::{Kept, Query};
 use crate::accel::listed::{Mailbox, test_listed};
 use crate::accel::tally::Tally;
 use crate::accel::walk_ray::{Span, WalkRay};
@@ -28,25 +28,30 @@ impl<T: Primitive> Walk for Octree<T> {
     type Primitive = T;
 
     #[inline(never)]
-    fn walk<Q: Query, P: PrecisionMode>(&self, ray: &Ray, tally: &mut Q::Tally) -> Option<ClosestHit<T>> {
+    fn walk<Q: Query, P: PrecisionMode, K: Kept<T>>(
+        &self,
+        ray: &Ray,
+        seed: K::Seed,
+        tally: &mut Q::Tally,
+    ) -> Option<K> {
         let walk_ray = WalkRay::new(ray, &self.bounds);
         let span = walk_ray.span_in(&self.bounds, ray.t_min, ray.t_max)?;
         let halves = Halves::new(&walk_ray, self.cube.lower);
         let primitive_ray = T::make_ready(ray);
-        let (mut best, mut mailbox) = (ClosestHit::none(ray), Mailbox::EMPTY);
+        let (mut kept, mut mailbox) = (K::begin(seed, ray), Mailbox::EMPTY);
 
         let mut stack = ArrayVec::<Pending, MOST_PENDING>::new_const();
         stack.push(Pending { span, cell: self.cube.whole(), node: 0 });
         while let Some(Pending { span, cell, node }) = stack.pop() {
             // What the ray passes exactly where the best hit is may hold an equal hit with a lower id.
-            if f64::from(best.t) < span.begin {
+            if f64::from(kept.t_max()) < span.begin {
                 continue;
             }
             let node = &self.nodes[node as usize];
             if node.is_leaf() {
                 let list = &self.listed[node.first as usize..][..node.count()];
                 let prepared = (&primitive_ray, ray.t_min);
-                if test_listed::<Q, P, T>(list, &self.primitives, &mut mailbox, prepared, &mut best, tally) {
+                if test_listed::<Q, P, T, K>(list, &self.primitives, &mut mailbox, prepared, &mut kept, tally) {
                     break;
                 }
             } else {
@@ -54,7 +59,7 @@ impl<T: Primitive> Walk for Octree<T> {
                 halves.for_each_passed(node, &cell, span, |pending| stack.push(pending));
             }
         }
-        best.found()
+        kept.found()
     }
 }
 

@@ -6,7 +6,7 @@ use super::node::{ANY, MOST_LEVELS, MOST_PAIRS, Node, NodePair};
 use super::pack::{numbered, pack};
 use super::sah::NODE_COST;
 use super::{Plane, SpaceTree};
-use crate::accel::{BuildContext, BuildFailure, Primitive, PrimitiveSource};
+use crate::accel::{BuildContext, BuildFailure, Copied, Primitive, PrimitiveSource};
 use crate::geometry::Aabb;
 
 /// A plane that divides a cell.
@@ -259,7 +259,7 @@ impl<D: Divide, S: PrimitiveSource> Builder<'_, D, S> {
             tree.lists.extend(pieces[begin..].iter().map(|piece| self.divide.number(piece)));
             pieces.truncate(begin);
             if tree.lists.len() - listed > MOST_UNSEARCHED {
-                let distinct = drop_duplicates(&mut tree.lists[listed..], self.source);
+                let distinct = drop_duplicates(&mut tree.lists[listed..], self.source, self.context);
                 tree.lists.truncate(listed + distinct);
             }
             let count = tree.lists.len() - listed;
@@ -327,7 +327,7 @@ pub(super) fn inner(split: &Split, pair: usize, planes: &mut Vec<Plane>) -> Node
 /// Keeps, of primitives that are the same to the bit, the one whose hits win: numbers are in the order of the ids.
 /// Returns how many are left, at the front.
 #[cold]
-fn drop_duplicates<S: PrimitiveSource>(numbers: &mut [u32], source: &S) -> usize {
+fn drop_duplicates<S: PrimitiveSource>(numbers: &mut [u32], source: &S, context: &BuildContext) -> usize {
     let shape = |number: &u32| numbered(source, *number).shape();
     numbers.sort_by_cached_key(|number| (shape(number), *number));
     let mut count = 1;
@@ -335,6 +335,9 @@ fn drop_duplicates<S: PrimitiveSource>(numbers: &mut [u32], source: &S) -> usize
         if shape(&numbers[next]) != shape(&numbers[count - 1]) {
             numbers[count] = numbers[next];
             count += 1;
+        } else {
+            let ids = |number: u32| numbered(source, number).ids();
+            context.note_copy(Copied { stored: ids(numbers[count - 1]), ids: ids(numbers[next]) });
         }
     }
     count

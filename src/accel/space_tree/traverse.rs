@@ -5,7 +5,7 @@ use arrayvec::ArrayVec;
 use super::SpaceTree;
 use super::node::{MOST_LEVELS, Node};
 use crate::accel::Primitive;
-use crate::accel::leaf::{ClosestHit, Query};
+use crate::accel::leaf::{Kept, Query};
 use crate::accel::listed::{Mailbox, test_listed};
 use crate::accel::tally::Tally;
 use crate::accel::walk_ray::{Span, WalkRay};
@@ -56,16 +56,17 @@ pub(in crate::accel) struct Crossing {
 impl<T: Primitive> SpaceTree<T> {
     /// `cross` is told inner nodes.
     #[inline(always)]
-    pub(in crate::accel) fn walk<Q: Query, P: PrecisionMode>(
+    pub(in crate::accel) fn walk<Q: Query, P: PrecisionMode, K: Kept<T>>(
         &self,
         ray: &Ray,
+        seed: K::Seed,
         walk_ray: &WalkRay,
         cross: impl Fn(Node) -> Crossing,
         tally: &mut Q::Tally,
-    ) -> Option<ClosestHit<T>> {
+    ) -> Option<K> {
         let mut span = walk_ray.span_in(&self.bounds, ray.t_min, ray.t_max)?;
         let primitive_ray = T::make_ready(ray);
-        let mut best = ClosestHit::none(ray);
+        let mut kept = K::begin(seed, ray);
         let mut stack = ArrayVec::<Pending, MOST_LEVELS>::new_const();
         let mut node = self.root;
         let mut mailbox = Mailbox::EMPTY;
@@ -90,19 +91,19 @@ impl<T: Primitive> SpaceTree<T> {
             let list = &self.lists[node.list()];
             if !list.is_empty() {
                 let ray = (&primitive_ray, ray.t_min);
-                if test_listed::<Q, P, T>(list, &self.primitives, &mut mailbox, ray, &mut best, tally) {
+                if test_listed::<Q, P, T, K>(list, &self.primitives, &mut mailbox, ray, &mut kept, tally) {
                     break;
                 }
             }
             // A cell that the ray comes near exactly where the best hit is may hold an equal hit with a lower id.
-            let t_max = f64::from(best.t);
+            let t_max = f64::from(kept.t_max());
             (node, span) = loop {
-                let Some(Pending { node, span }) = stack.pop() else { return best.found() };
+                let Some(Pending { node, span }) = stack.pop() else { return kept.found() };
                 if span.begin <= t_max {
                     break (node, Span { begin: span.begin, end: span.end.min(t_max) });
                 }
             };
         }
-        best.found()
+        kept.found()
     }
 }

@@ -179,6 +179,46 @@ impl<S: Simd> BoxTest<S> for PreparedPlain<S> {
     }
 }
 
+/// The half-line from a point along +x, exactly: a box that it touches is met. Distances are not told.
+pub(super) struct AlongX([f32; 3]);
+
+pub(super) struct PreparedAlongX<S: Simd>([S::F32x8; 3]);
+
+impl AlongX {
+    pub(super) fn new(point: [f32; 3]) -> Self {
+        Self(point)
+    }
+}
+
+impl Boxes for AlongX {
+    type Prepared<S: Simd> = PreparedAlongX<S>;
+
+    #[inline(always)]
+    fn scale_time(&self, t: f32) -> f32 {
+        t
+    }
+
+    #[inline(always)]
+    fn order(_distance: f32) -> u32 {
+        0
+    }
+
+    #[inline(always)]
+    fn prepare<S: Simd>(&self, simd: S) -> PreparedAlongX<S> {
+        PreparedAlongX(splat(simd, self.0))
+    }
+}
+
+impl<S: Simd> BoxTest<S> for PreparedAlongX<S> {
+    #[inline(always)]
+    fn test(&self, simd: S, node: &WideNode, _t_max: f32) -> (u32, S::F32x8) {
+        let Self([x, y, z]) = *self;
+        let is_below = |axis: usize, at: S::F32x8| simd.less_or_equal(simd.load(&node.planes[axis][0]), at);
+        let is_above = |axis: usize, at: S::F32x8| simd.less_or_equal(at, simd.load(&node.planes[axis][1]));
+        (is_above(0, x) & is_below(1, y) & is_above(1, y) & is_below(2, z) & is_above(2, z), simd.splat(0.0))
+    }
+}
+
 #[inline(always)]
 fn splat<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> [S::F32x8; 3] {
     [simd.splat(x), simd.splat(y), simd.splat(z)]

@@ -23,6 +23,12 @@ pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
 
     fn t_min(&self) -> f32;
 
+    /// The ray as the scalar test wants it.
+    fn ray(&self) -> &<F::Primitive as Primitive>::Ray;
+
+    /// What is not refused between `t_min` and `t_max`, as bits. Must be `#[inline(always)]`.
+    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> u32;
+
     /// Keeps the best hit; `t_min` is that of the ray, `t_max` that of the best hit. True ends the query. Must be
     /// `#[inline(always)]`.
     fn test<Q: Query, P: PrecisionMode, S: Simd>(
@@ -152,6 +158,16 @@ impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     #[inline(always)]
     fn t_min(&self) -> f32 {
         self.t_min
+    }
+
+    #[inline(always)]
+    fn ray(&self) -> &TriangleRay {
+        &self.ray
+    }
+
+    #[inline(always)]
+    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> u32 {
+        self.candidates::<P, S>(simd, child, t_min, t_max).lanes
     }
 
     #[inline(always)]

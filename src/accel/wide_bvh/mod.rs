@@ -6,6 +6,7 @@
 
 mod box_test;
 mod collapse;
+mod collect;
 mod compact_leaves;
 mod leaf_test;
 mod leaves;
@@ -29,7 +30,10 @@ pub(crate) use sphere_leaves::Spheres;
 use super::bvh::{BinnedSah, Morton, build, reinsert, split_spatial};
 use super::reference::{PrimitiveSource, Reference};
 use super::stats::Shape;
-use super::{Accel, BuildContext, BuildFailure, ClosestHit, Primitive, Quality, Query};
+use super::{
+    Accel, AllHits, Around, BuildContext, BuildFailure, ClosestHit, Copies, OutOfMemory, Primitive, Quality, Query,
+    SortedHits,
+};
 use crate::geometry::{Aabb, PrecisionMode, Ray};
 use crate::simd::{LANES, Simd, prefetch_lines};
 
@@ -162,6 +166,14 @@ impl<S: Simd, F: LeafForm> Accel for Vectorized<'_, S, F> {
 
     fn find<Q: Query, P: PrecisionMode>(&self, ray: Ray) -> (Option<ClosestHit<Self::Found>>, Q::Tally) {
         self.bvh.find::<Q, P, S>(self.simd, ray)
+    }
+
+    fn all_hits<P: PrecisionMode>(&self, ray: &Ray, most: usize, copies: &Copies) -> Result<SortedHits, OutOfMemory> {
+        AllHits::find::<P>(ray, most, copies, |all| self.bvh.offer_hits::<P, S>(self.simd, ray, all))
+    }
+
+    fn look_around(&self, around: &mut Around) {
+        self.bvh.look_around(around);
     }
 
     fn query_runs<'r, Q, P, R, T>(

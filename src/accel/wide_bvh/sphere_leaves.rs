@@ -162,6 +162,16 @@ impl<'a> LeafTest<'a, Spheres> for SphereTest<'a> {
     }
 
     #[inline(always)]
+    fn ray(&self) -> &SphereRay {
+        &self.ray
+    }
+
+    #[inline(always)]
+    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, _t_min: S::F32x8, _t_max: f32) -> u32 {
+        self.candidates(simd, child)
+    }
+
+    #[inline(always)]
     fn test<Q: Query, P: PrecisionMode, S: Simd>(
         &self,
         simd: S,

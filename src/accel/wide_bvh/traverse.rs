@@ -19,7 +19,7 @@ use crate::simd::{LANES, Simd, SimdKernel};
 
 /// A child that waits, below where the ray enters it: these numbers have the order along the ray.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Pending(u64);
+pub(super) struct Pending(u64);
 
 impl Pending {
     #[inline(always)]
@@ -42,12 +42,12 @@ impl Pending {
 /// A wide level is a binary level at least, and leaves all children but one waiting.
 const MOST_PENDING: usize = MOST_LEVELS * (LANES - 1);
 
-type Stack = ArrayVec<Pending, MOST_PENDING>;
+pub(super) type Stack = ArrayVec<Pending, MOST_PENDING>;
 
 /// Aligned, because a compiler that has something to align in a frame aligns the vectors that it keeps there too: else half
 /// of them cross a cache line.
 #[repr(align(32))]
-struct Aligned<T>(T);
+pub(super) struct Aligned<T>(pub(super) T);
 
 /// The hit of a ray, and what finding it took.
 pub(super) type Found<Q, F> =
@@ -91,8 +91,8 @@ where
         match ObliqueSlabs::new(&ray, &bvh.corners) {
             Some(slabs) => {
                 let mut stack = Aligned(Stack::new_const());
-                let mut walk = Walk::<Q, F>::new::<P>(bvh, &ray, &mut stack.0);
-                let found = walk.run::<P, S, _>(simd, &Oblique::new(slabs));
+                let mut walk = Walk::<Q, F, Best>::new::<P>(bvh, &ray, &mut stack.0, Best::none(&ray));
+                let found = walk.find::<P, S, _>(simd, &Oblique::new(slabs));
                 then(found.map(|hit| hit.on_surface(&ray)), walk.tally)
             }
             // In a frame of its own, so that ordinary rays do not pay for its registers.
@@ -122,44 +122,91 @@ impl<Q: Query, P: PrecisionMode, F: LeafForm> SimdKernel for AlongPlanes<'_, Q, 
         }
         let mut stack = Aligned(Stack::new_const());
         let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
-        let mut walk = Walk::<Q, F>::new::<P>(bvh, &ray, &mut stack.0);
+        let mut walk = Walk::<Q, F, Best>::new::<P>(bvh, &ray, &mut stack.0, Best::none(&ray));
         walk.leaves.check_range();
-        let found = walk.run::<P, S, _>(simd, &boxes);
+        let found = walk.find::<P, S, _>(simd, &boxes);
         (found.map(|hit| hit.on_surface(&ray)), walk.tally)
     }
 }
 
-/// A ray on its way through the tree.
-struct Walk<'a, Q: Query, F: LeafForm> {
-    bvh: &'a WideBvh<F>,
-    stack: &'a mut Stack,
-    leaves: F::Test<'a>,
-    best: Best,
-    tally: Q::Tally,
+/// What a walk keeps of what leaves hold.
+pub(super) trait Keep<F: LeafForm> {
+    /// Beyond this the walk need not look.
+    fn t_max(&self) -> f32;
+
+    /// See [`LeafTest::test`].
+    fn test_leaf<Q: Query, P: PrecisionMode, S: Simd>(
+        &mut self,
+        leaves: &F::Test<'_>,
+        simd: S,
+        child: Child,
+        t_min: S::F32x8,
+        t_max: f32,
+    ) -> bool;
 }
 
-impl<'a, Q: Query, F: LeafForm> Walk<'a, Q, F> {
+impl<F: LeafForm> Keep<F> for Best {
     #[inline(always)]
-    fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray, stack: &'a mut Stack) -> Self {
-        stack.push(Pending::new(0, bvh.root));
-        Self { bvh, stack, leaves: F::Test::new::<P>(bvh, ray), best: Best::none(ray), tally: Q::Tally::default() }
+    fn t_max(&self) -> f32 {
+        Best::t_max(self)
     }
 
     #[inline(always)]
-    fn run<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> Option<ClosestHit<F::Primitive>> {
+    fn test_leaf<Q: Query, P: PrecisionMode, S: Simd>(
+        &mut self,
+        leaves: &F::Test<'_>,
+        simd: S,
+        child: Child,
+        t_min: S::F32x8,
+        t_max: f32,
+    ) -> bool {
+        leaves.test::<Q, P, S>(simd, child, t_min, t_max, self)
+    }
+}
+
+/// A ray on its way through the tree.
+pub(super) struct Walk<'a, Q: Query, F: LeafForm, K> {
+    bvh: &'a WideBvh<F>,
+    stack: &'a mut Stack,
+    pub(super) leaves: F::Test<'a>,
+    kept: K,
+    tally: Q::Tally,
+}
+
+impl<Q: Query, F: LeafForm> Walk<'_, Q, F, Best> {
+    #[inline(always)]
+    fn find<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> Option<ClosestHit<F::Primitive>> {
+        if self.run::<P, S, B>(simd, boxes) {
+            Some(ClosestHit::UNSPECIFIED)
+        } else if Q::FIRST_HIT_ENDS {
+            None
+        } else {
+            self.leaves.finish(&self.kept)
+        }
+    }
+}
+
+impl<'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'a, Q, F, K> {
+    #[inline(always)]
+    pub(super) fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray, stack: &'a mut Stack, kept: K) -> Self {
+        stack.push(Pending::new(0, bvh.root));
+        Self { bvh, stack, leaves: F::Test::new::<P>(bvh, ray), kept, tally: Q::Tally::default() }
+    }
+
+    /// Whether what is kept ended it.
+    #[inline(always)]
+    pub(super) fn run<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> bool {
         let bvh = self.bvh;
         let nodes = bvh.nodes.as_slice();
         let t_min = simd.splat(self.leaves.t_min());
         let box_test = boxes.prepare(simd);
         loop {
-            let t_max = self.best.t_max();
+            let t_max = self.kept.t_max();
             let scaled_t_max = boxes.scale_time(t_max);
             let last = Pending::last(B::order(scaled_t_max));
             // A child that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
             let mut child = loop {
-                let Some(pending) = self.stack.pop() else {
-                    return if Q::FIRST_HIT_ENDS { None } else { self.leaves.finish(&self.best) };
-                };
+                let Some(pending) = self.stack.pop() else { return false };
                 if Q::FIRST_HIT_ENDS || pending <= last {
                     break pending.child();
                 }
@@ -167,8 +214,8 @@ impl<'a, Q: Query, F: LeafForm> Walk<'a, Q, F> {
             loop {
                 if child.is_leaf() {
                     self.tally.test_primitives(child.triangles().1);
-                    if self.leaves.test::<Q, P, S>(simd, child, t_min, t_max, &mut self.best) {
-                        return Some(ClosestHit::UNSPECIFIED);
+                    if self.kept.test_leaf::<Q, P, S>(&self.leaves, simd, child, t_min, t_max) {
+                        return true;
                     }
                     break;
                 }
