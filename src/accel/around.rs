@@ -35,7 +35,7 @@ impl<'a> Around<'a> {
     }
 
     /// Whether the point is inside, by parity, or on a surface.
-    pub(crate) fn is_inside(mut self) -> Result<bool, OutOfMemory> {
+    pub(crate) fn into_answer(mut self) -> Result<bool, OutOfMemory> {
         if let Some(failure) = self.out_of_memory {
             return Err(failure);
         }

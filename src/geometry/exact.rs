@@ -1,7 +1,7 @@
 //! Which triangles a ray hits, where, and in what order, decided exactly.
 //!
-//! With `a`, `b`, `c` the vertices relative to the origin, a point of the ray is `t d = A a + B b + C c` with weights that sum to
-//! 1. Multiplied by `b x c`, and so on, that makes `A`, `B`, `C` of the determinants `(d, b, c)`, `(d, c, a)`, `(d, a, b)` over
+//! With `a`, `b`, `c` the vertices relative to the origin, a point of the ray is `t d = A a + B b + C c`, where the weights sum to
+//! one. Multiplied by `b x c`, and so on, that makes `A`, `B`, `C` of the determinants `(d, b, c)`, `(d, c, a)`, `(d, a, b)` over
 //! their sum, and `t` of `(a, b, c)` over it. The closed triangle is hit where the three do not differ in sign and their sum is not
 //! zero. All are polynomials in `f32`s, whose products and sums expansions hold: their bits lie between 2^-447 and 2^390, those of
 //! the products that tell which `t` is less between 2^-894 and 2^780, all in the range of `f64`.

@@ -41,7 +41,7 @@ impl Scene {
         if point.is_finite() {
             self.dispatch(LookAround(&mut around));
         }
-        around.is_inside()
+        around.into_answer()
     }
 
     /// Of a valid ray.

@@ -57,7 +57,7 @@ fn build_with(
     } else {
         Content::Triangles(build_part(plan, of_meshes, &meshes, context, &mut shapes)?)
     };
-    let copies = Copies::new(context.take_copies()?);
+    let copies = Copies::new(context.take_copies()?, context)?;
     let total = |of: fn(&Shape) -> usize| shapes.iter().map(of).sum::<usize>() as u64;
     // Only the wide BVH has kernels beyond the scalar one.
     let isa = if structure == Structure::WideBvh { options.isa } else { Isa::Scalar }.resolve();

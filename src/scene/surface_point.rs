@@ -68,7 +68,7 @@ impl Scene {
             return Err(SurfaceError::InvalidRay);
         }
         let (geometry_id, primitive_id) = (hit.geometry_id, hit.primitive_id);
-        let surface = self.primitive((geometry_id, primitive_id))?;
+        let surface = self.primitive(self.copies.stored((geometry_id, primitive_id)))?;
         let surface = surface.ok_or(SurfaceError::NotInScene { geometry_id, primitive_id })?;
         let point = match &surface {
             AnyPrimitive::Triangle(triangle) => triangle.hit_point(ray),
