@@ -213,8 +213,8 @@ mod tests {
                 (0..3).map(|axis| magnitude(&plane.normal[axis]) * rational(point.error[axis])).sum();
             prop_assert!(magnitude(&plane.height(point.position)) <= allowed, "off the plane");
             if let Some(met) = plane.meets(&ray, &triangle) {
-                for axis in 0..3 {
-                    let distance = magnitude(&(&met[axis] - rational(point.position[axis])));
+                for (axis, met) in met.iter().enumerate() {
+                    let distance = magnitude(&(met - rational(point.position[axis])));
                     prop_assert!(distance <= rational(point.error[axis]), "axis {axis} of {point:?}");
                 }
             }
