@@ -504,6 +504,55 @@ GnomonStatus gnomon_occluded_n(const struct GnomonScene *scene,
                                uint8_t *occluded_out,
                                const struct GnomonQueryOptions *options);
 
+// The hits of a ray, as many as there is room for: those that come first, or first after one that is known.
+//
+// They come in the order in which hits win: by `t`, then `geometry_id`, then `primitive_id`; in `GNOMON_PRECISION_EXACT` those
+// whose `t` differ only before they are rounded keep the order of the exact ones. `hits_out` has room for `capacity` hits,
+// and `count_out` gets how many are written: if fewer, there are no more; else call again with `&hits_out[capacity - 1]` as
+// `after` for those that follow. NULL begins with what `gnomon_intersect` gives, to the bit. There is a hit just where
+// `gnomon_occluded` is true.
+//
+// Each triangle is there at most once, also where the ray passes an edge or a vertex that several share: then each of them
+// that the ray hits is there. Triangles that are the same are each there. A sphere is there where the ray enters and where
+// it leaves it, once where both have the same `t`. A ray that is not valid has no hits.
+//
+// Crossings can be counted with this as long as no ray meets an edge: from inside of a closed mesh there is an odd number of
+// hits up to `INFINITY`. But a ray through a shared edge may hit both triangles, though it passes one surface, and one that
+// runs within a face hits nothing of it. `gnomon_contains_point` is right for every point.
+//
+// `after` must be a hit of the same ray in the same scene. The call keeps 56 bytes for a hit, at most for three times as many
+// as are asked for; with `after`, for all that have its `t`. Any number of threads may call this on one scene.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer (`hits_out` may be NULL for a `capacity` of 0), an array that is
+// not aligned for floats, or a capacity that no memory can hold; `GNOMON_ERROR_OUT_OF_MEMORY`. Nothing is written then.
+GnomonStatus gnomon_intersect_all(const struct GnomonScene *scene,
+                                  const struct GnomonRay *ray,
+                                  const struct GnomonHit *after,
+                                  size_t capacity,
+                                  struct GnomonHit *hits_out,
+                                  size_t *count_out);
+
+// Whether a point is inside of closed meshes and spheres: whether a line that begins there leaves them an odd number of
+// times.
+//
+// Exact for every finite point, in every structure and precision, also where lines from it run through edges and vertices
+// or along faces. A point on a triangle or a sphere counts as inside; one that is not finite is outside.
+//
+// The triangles of the whole scene count as one surface. It is closed where each edge belongs to an even number of
+// triangles, with the same end points to the bit (-0 is 0), in whichever meshes these are. How triangles are wound makes
+// no difference. Where closed meshes or spheres overlap or are nested, what is inside of an even number of them is
+// outside; triangles that are there twice cancel. Triangles of zero area do not count. If the surface is not
+// closed, the answer is what the half-line towards +x crosses.
+//
+// `point` has three floats (x, y, z); `inside_out` gets the answer. Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null
+// pointer; `GNOMON_ERROR_OUT_OF_MEMORY`. Any number of threads may call this on one scene.
+//
+// Source: Edelsbrunner and Muecke 1990, "Simulation of simplicity: a technique to cope with degenerate cases in geometric
+// algorithms", ACM TOG 9(1).
+GnomonStatus gnomon_contains_point(const struct GnomonScene *scene,
+                                   const float point[3],
+                                   bool *inside_out);
+
 // Where a ray hit: the point, a bound on its error, and the normal. `hit` is what this scene answered to `ray`.
 //
 // The point is computed anew from the ray and the surface, not from `hit`, of which the ids count, and `t` to tell a sphere's

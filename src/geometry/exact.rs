@@ -50,6 +50,10 @@ impl TriangleRay {
     #[cold]
     #[inline(never)]
     pub(super) fn hit_exactly(&self, triangle: &Triangle) -> Option<TriangleHit> {
+        // In a plane across an axis, as rays along a floor are, or beside it.
+        if (0..3).any(|axis| self.direction[axis] == 0.0 && triangle.lies_across(axis)) {
+            return None;
+        }
         self.verdict::<f64>(triangle)
             .settled()
             .or_else(|_| self.verdict::<DoubleDouble>(triangle).settled())

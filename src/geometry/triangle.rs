@@ -124,12 +124,14 @@ impl Triangle {
         (0..3).all(|corner| !these[corner] || is_there(self.vertex(corner)))
     }
 
+    /// Whether all vertices have this coordinate in common.
+    pub(crate) fn lies_across(&self, axis: usize) -> bool {
+        self.axes[axis] == [self.axes[axis][0]; 3]
+    }
+
     /// Whether all vertices of both have one coordinate in common.
     pub(crate) fn lies_across_an_axis_with(&self, other: &Self) -> bool {
-        (0..3).any(|axis| {
-            let at = self.axes[axis][0];
-            self.axes[axis] == [at; 3] && other.axes[axis] == [at; 3]
-        })
+        (0..3).any(|axis| self.lies_across(axis) && other.axes[axis] == self.axes[axis])
     }
 
     /// Exactly.
