@@ -57,6 +57,9 @@ public:
     /// What finding each prepared ray's closest hit takes, one entry a ray; all 0 where an engine cannot tell.
     virtual void count(std::span<GnomonRayCounts> counts) { std::ranges::fill(counts, GnomonRayCounts{}); }
 
+    /// gnomon's scene, for its other calls; null of other engines.
+    virtual const GnomonScene* scene() const { return nullptr; }
+
     /// The engine's function behind a form, by its own name; for batch, after a first call.
     virtual std::string call_name(CallForm form, bool occlusion) const = 0;
 

@@ -106,6 +106,8 @@ public:
         for (std::size_t i = 0; i < rays_.size(); ++i) gnomon_intersect_counted(scene_.get(), &rays_[i], &hit, &counts[i]);
     }
 
+    const GnomonScene* scene() const override { return scene_.get(); }
+
     std::string call_name(CallForm form, bool occlusion) const override {
         const std::string single = occlusion ? "gnomon_occluded" : "gnomon_intersect";
         return form == CallForm::batch ? single + "_n" : single;

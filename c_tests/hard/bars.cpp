@@ -191,6 +191,7 @@ std::vector<HardBar> judge_hard_bars(const HardResults& results) {
                         ratio <= invalid_cost, BarKind::timing});
     }
     add_count_bar(bars, "B9", "hits of triangles without area", sum_of(results, {25}), "hits");
+    add_count_bar(bars, "B10", "secondary rays from the returned bound: self-hits and leaks", sum_of(results, {41}), "wrong");
     add_count_bar(bars, "B11", "hits of duplicates that are not the lowest", sum_of(results, {34}), "hits");
     add_cost_bar(bars, results, "accurate", &PrecisionCost::accurate_ns, accurate_cost);
     add_cost_bar(bars, results, "exact", &PrecisionCost::exact_ns, exact_cost);

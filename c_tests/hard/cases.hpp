@@ -19,6 +19,7 @@ std::vector<HardCase> range_cases();        // 30, 32: small and large coordinat
 std::vector<HardCase> invalid_ray_cases();  // 31, 33
 std::vector<HardCase> crowd_cases();        // 34, 36 to 39
 std::vector<HardCase> agreement_cases();    // 40
+std::vector<HardCase> walk_cases();         // 6, 41: from hit to hit
 std::vector<HardCase> report_cases();       // 42
 
 }  // namespace harness
