@@ -52,7 +52,7 @@ TEST_CASE("point_of_a_triangle_has_position_error_and_unit_normal") {
         const SceneHandle scene = build_scene({unit_triangle(-1), big}, configuration.options);
         const GnomonSurfacePoint point = surface_point(scene, {{0.1f, 1, 2}, 0, {0, 0, -1}, 10});
         CHECK(is(point.position, 0.1f, 1, 1));
-        for (const float error : point.error) CHECK((error >= 0 && error < 1e-14f));
+        for (const float error : point.error) CHECK((error >= 0 && error < 1e-12f));
         CHECK(is(point.normal, 0, 0, 1));
         CHECK((point.surface == GNOMON_SURFACE_TRIANGLE && point.precision == configuration.options.precision));
         CHECK(is_miss(intersect(scene, leave(point, 0.5f, 0, 1e-6f))));
