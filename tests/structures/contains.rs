@@ -129,12 +129,18 @@ fn is_on([a, b, c]: [Point; 3], point: Point) -> bool {
         && [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| dot(cross(minus(v, u), minus(point, u)), normal) >= 0)
 }
 
-/// Whether the half-line crosses the triangle's inside; `None` where its line meets an edge, or the triangle's plane holds
-/// it.
+/// Whether the half-line from a point that is not on the triangle crosses its inside; `None` where its line meets an edge, or
+/// the triangle's plane holds it.
 fn crosses(corners: [Point; 3], point: Point, direction: [i128; 3]) -> Option<bool> {
-    let [a, b, c] = corners.map(|corner| minus(corner, point));
-    if cross(minus(corners[1], corners[0]), minus(corners[2], corners[0])) == [0; 3] {
+    let normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+    if normal == [0; 3] {
         return Some(false);
+    }
+    let [a, b, c] = corners.map(|corner| minus(corner, point));
+    let volume = dot(a, cross(b, c));
+    if volume == 0 {
+        // It meets the plane at the point alone.
+        return (dot(direction, normal) != 0).then_some(false);
     }
     let weights = [(b, c), (c, a), (a, b)].map(|(u, v)| dot(direction, cross(u, v)));
     if weights.contains(&0) {
@@ -142,8 +148,7 @@ fn crosses(corners: [Point; 3], point: Point, direction: [i128; 3]) -> Option<bo
     }
     let is_met = weights.iter().all(|w| *w > 0) || weights.iter().all(|w| *w < 0);
     // By Cramer's rule the line is at the plane at their quotient.
-    let (volume, sum) = (dot(a, cross(b, c)), weights.iter().sum::<i128>());
-    Some(is_met && (volume > 0) == (sum > 0))
+    Some(is_met && (volume > 0) == (weights.iter().sum::<i128>() > 0))
 }
 
 /// A box whose faces are grids of so many cells, each of two triangles.
