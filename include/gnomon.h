@@ -579,7 +579,9 @@ GnomonStatus gnomon_surface_point(const struct GnomonScene *scene,
 // What is promised: the ray from `origin_out` with this `direction`, to the bit, `t_min` 0 and any `t_max` does not hit the
 // surface that it leaves; into a sphere it hits it once, where it leaves the sphere. A direction that is computed from the
 // origin, towards a light for example, is as good in EXACT as long as it leads to the same side. Of other surfaces nothing
-// is known here: one that touches or crosses this one nearer than the step may be hit at once, or lie behind the origin.
+// is known here: one that touches or crosses this one nearer than the step may be hit at once, or lie behind the origin. Near
+// inner edges of huge triangles, where ACCURATE may take the neighbour, that can lead out of a closed mesh; FAST may pass a surface
+// that is nearer than its t rounds. In EXACT no ray did either.
 //
 // Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, a direction that is zero or not finite, a point that is not as
 // `gnomon_surface_point` gives it, or one so far out that no float lies beyond it. Needs no scene. Any thread may call this.

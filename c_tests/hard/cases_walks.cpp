@@ -105,12 +105,14 @@ void run_contained(CaseRun& run) {
     }
 }
 
-/// A direction that leads back to the side the ray came from, now and then hardly off the surface.
+/// A direction that leads back to the side the ray came from, now and then hardly off the surface, but not so little that
+/// rounding the normal and the direction to float could change the side.
 Vec3f next_direction(const GnomonRay& ray, const Vec3d& normal, Rng& rng) {
+    constexpr double least = 0x1p-20;
     const Vec3d unit_normal = normalized(normal);
     const Vec3d direction = unit_direction(rng);
     const double along = dot(direction, unit_normal), kept = rng.below(4) == 0 ? std::pow(10, rng.uniform(-8, -1)) : 1;
-    const double wanted = std::copysign(kept * along, -dot(to_double(ray.direction), unit_normal));
+    const double wanted = std::copysign(std::max(least, kept * std::abs(along)), -dot(to_double(ray.direction), unit_normal));
     return to_float(direction + (wanted - along) * unit_normal);
 }
 
@@ -146,7 +148,8 @@ void run_secondary_rays(CaseRun& run) {
                 std::vector<GnomonRay> next;
                 std::vector<GnomonHit> left;
                 for (std::size_t i = 0; i < rays.size(); ++i) {
-                    if (!is_hit(hits[i])) continue;
+                    // At t = 0 the origin is on another surface, and which side of that it came from has no answer.
+                    if (!is_hit(hits[i]) || (bounce > 0 && hits[i].t <= 0)) continue;
                     const std::optional<GnomonRay> ray = next_ray(engine, backend, rays[i], hits[i], rng);
                     if (!ray) {
                         ++row.checked;
@@ -161,7 +164,9 @@ void run_secondary_rays(CaseRun& run) {
                     const GnomonHit& hit = answers.hits[i];
                     const bool is_self_hit = hit.geometry_id == left[i].geometry_id && hit.primitive_id == left[i].primitive_id;
                     ++row.checked;
-                    if (!is_hit(hit))
+                    if (!is_hit(hit) && engine.precision == "fast")
+                        ++row.failed;
+                    else if (!is_hit(hit))
                         run.fail(row, mesh, next[i], "leaves a closed mesh");
                     else if (is_self_hit)
                         run.fail(row, mesh, next[i], "hits what it left: " + hit_text(hit));
@@ -180,7 +185,7 @@ std::vector<HardCase> walk_cases() {
         {6, "all hits through vertices and edges from outside", "each triangle once; EXACT the exact ones", run_all_hits},
         {6, "points inside and outside of closed meshes", "0 wrong", run_contained, "", "points"},
         {41, "secondary rays from the returned bound (Embree: from origin + t * direction)", "0 self-hits, 0 leaks",
-         run_secondary_rays},
+         run_secondary_rays, "FAST computes t in float: a surface that is nearer than that rounds may be passed"},
     };
 }
 
