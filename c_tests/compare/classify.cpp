@@ -87,8 +87,7 @@ Contract contract_of(const BuildReport& report) {
 
 bool is_fault(const BuildReport& report, const Verdict& verdict) {
     if (report.precision != "fast") return verdict.outside_contract;
-    const bool invented = verdict.false_hit && verdict.t_ulps < 0;
-    return verdict.outside_contract && (verdict.missed || invented);
+    return verdict.outside_contract && (verdict.missed || verdict.invented);
 }
 
 std::vector<Errors> classify(std::vector<Engine>& engines, const RaySet& set, const Oracle& oracle, const std::string& scene_spec,

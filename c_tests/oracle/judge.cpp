@@ -89,6 +89,7 @@ Verdict judge_intersect(const GnomonRay& ray, const GnomonHit& answer, const std
     Verdict verdict;
     verdict.missed = !is_hit(answer) && closest != nullptr;
     verdict.false_hit = is_hit(answer) && !reported_counts;
+    verdict.invented = is_hit(answer) && reported == nullptr;
     verdict.wrong_primitive = reported_counts && reported->t > closest->t;
     verdict.tie = reported_counts && reported->t == closest->t && !same_triangle(answer, *closest);
     if (exact) {
@@ -105,6 +106,7 @@ Verdict judge_occluded(const GnomonRay& ray, bool answer, const std::vector<Cand
     Verdict verdict;
     verdict.missed = truth && !answer;
     verdict.false_hit = answer && !truth;
+    verdict.invented = answer && candidates.empty();
     if (contract == Contract::banded) verdict.outside_contract = occlusion_leaves_band(ray, answer, candidates);
     if (contract == Contract::exact) verdict.outside_contract = answer != truth;
     return verdict;

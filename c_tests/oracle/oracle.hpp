@@ -27,6 +27,7 @@ struct Candidate {
 struct Verdict {
     bool missed = false;            // there is an exact hit, the engine reported none
     bool false_hit = false;         // the triangle reported is not hit exactly, or not within the interval
+    bool invented = false;          // the triangle reported is not hit, nor within the band of the ray
     bool wrong_primitive = false;   // it reported a true hit, but not the closest
     bool tie = false;               // it reported another triangle than the oracle's first, at the same rounded t: not wrong
     bool outside_contract = false;  // beyond what accuracy.md promises for the precision: see judge.cpp

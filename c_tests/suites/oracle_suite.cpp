@@ -415,6 +415,7 @@ TEST_SUITE("judge") {
     TEST_CASE("judge_hit_of_nothing_as_false") {
         const Verdict verdict = oracle.judge(outside, hit(1, 5, 0.75f, 0.75f), Contract::banded);
         CHECK(verdict.false_hit);
+        CHECK(verdict.invented);
         CHECK(verdict.outside_contract);
         CHECK_FALSE(oracle.judge(outside, hit(1, 5, 0.75f, 0.75f), Contract::none).outside_contract);
     }
