@@ -53,7 +53,7 @@ pub(crate) trait Walk {
         false
     }
 
-    /// What there is along a valid ray; `seed` makes what is kept of it. Must be `#[inline(never)]`, so that it is compiled
+    /// What there is along a valid ray; `seed` makes what is kept of it. Should be `#[inline(never)]`, so that it is compiled
     /// once for all callers.
     fn walk<Q: Query, P: PrecisionMode, K: Kept<Self::Primitive>>(
         &self,
