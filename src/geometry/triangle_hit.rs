@@ -369,12 +369,18 @@ fn edge_doubt(x: &[f32; 3], y: &[f32; 3], z: &[f32; 3]) -> f32 {
     let sum = |values: &[f32; 3]| values[0].abs() + values[1].abs() + values[2].abs();
     let size = sum(x) + sum(y);
     let depth = greater(greater(z[0].abs(), z[1].abs()), z[2].abs());
+    if size >= MOST_REACH {
+        return f32::INFINITY;
+    }
     let moved = 2.25 * UNIT_ROUNDOFF * size + 6.5 * UNIT_ROUNDOFF * depth + LEAST_DOUBT;
     moved * (size + 2.25 * moved) + 0.75 * UNIT_ROUNDOFF * size * size + LEAST_DOUBT
 }
 
 /// 2^-120: what 64 results that underflow add up to.
 const LEAST_DOUBT: f32 = 1.0 / (1u128 << 120) as f32;
+
+/// From 2^62 on products of two coordinates may overflow, and an infinite edge function tells no sign for certain.
+const MOST_REACH: f32 = (1u64 << 62) as f32;
 
 /// A NaN is kept if it is the first.
 #[inline(always)]
@@ -389,7 +395,7 @@ fn greater(a: f32, b: f32) -> f32 {
 /// `M s` and some roundings, because sheared coordinates do not exceed `2 M`, so products and difference round by `2.2 u M s`.
 #[inline(always)]
 pub(crate) fn edge_slack(reach: f32) -> f32 {
-    9.0 * UNIT_ROUNDOFF * reach + LEAST_DOUBT
+    if reach < MOST_REACH { 9.0 * UNIT_ROUNDOFF * reach + LEAST_DOUBT } else { f32::INFINITY }
 }
 
 /// `w^2 + 2^-120` of [`edge_slack`].
