@@ -32,9 +32,10 @@
 //   No ray slips through a shared edge or vertex of a mesh, in any precision.
 //   FAST and ACCURATE decide in float: where a ray passes an edge at less than the rounding of its coordinates, a
 //   few u of the distance, they may take the neighbour across it. ACCURATE gives t within 0.51 ulp, and u and v
-//   within 0.52 u, of the exact values. Coordinates may be as large as 1e38 and as small as they come. Gradual
-//   underflow is expected to be on, as it is unless a host sets FTZ or DAZ; the library never changes the
-//   floating-point environment.
+//   within 0.52 u, of the exact values. EXACT decides as if nothing was rounded. Coordinates may be as large as 1e38,
+//   in EXACT 3.4e38, and as small as they come. Gradual underflow is expected to be on, as it is unless a host sets
+//   FTZ or DAZ: these make zeros of denormal numbers, in EXACT too. The library never changes the floating-point
+//   environment.
 
 #ifndef GNOMON_H
 #define GNOMON_H

@@ -27,8 +27,9 @@ std::unique_ptr<Backend> gnomon_backend(const Scene& scene, std::uint32_t struct
 std::vector<std::unique_ptr<Backend>> backends(const Scene& scene) {
     constexpr std::size_t brute_force_triangles = 200;  // more would take most of the suite's time
     std::vector<std::unique_ptr<Backend>> made;
-    for (const std::uint32_t precision : {GNOMON_PRECISION_FAST, GNOMON_PRECISION_ACCURATE}) {
+    for (const std::uint32_t precision : {GNOMON_PRECISION_FAST, GNOMON_PRECISION_ACCURATE, GNOMON_PRECISION_EXACT}) {
         for (const std::uint32_t quality : {GNOMON_QUALITY_LOW, GNOMON_QUALITY_MEDIUM, GNOMON_QUALITY_HIGH}) {
+            if (precision == GNOMON_PRECISION_EXACT && quality != GNOMON_QUALITY_MEDIUM) continue;  // ties take long
             made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_BVH, quality, precision));
             made.push_back(gnomon_backend(scene, GNOMON_STRUCTURE_WIDE_BVH, quality, precision));
         }

@@ -90,12 +90,15 @@ pub(crate) trait PrecisionMode {
     ) -> Option<TriangleHit>;
 
     /// The hit of a triangle whose `f32` edge functions have one sign, none zero, where those are all that it takes.
+    #[inline(always)]
     fn evaluate_sheared(
-        ray: &TriangleRay,
-        corners: &Corners,
-        sheared: &Weights<f32>,
-        z: &[f32; 3],
-    ) -> Option<TriangleHit>;
+        _ray: &TriangleRay,
+        _corners: &Corners,
+        _sheared: &Weights<f32>,
+        _z: &[f32; 3],
+    ) -> Option<TriangleHit> {
+        None
+    }
 
     /// For such a triangle what the answer is made of, where that does not need more.
     fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Evaluation>;
@@ -306,16 +309,6 @@ impl PrecisionMode for Accurate {
     }
 
     #[inline(always)]
-    fn evaluate_sheared(
-        _ray: &TriangleRay,
-        _corners: &Corners,
-        _sheared: &Weights<f32>,
-        _z: &[f32; 3],
-    ) -> Option<TriangleHit> {
-        None
-    }
-
-    #[inline(always)]
     fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Evaluation> {
         Evaluation::inside::<S, Self>(simd, ray, corners, t_min)
     }
@@ -339,16 +332,6 @@ impl PrecisionMode for Exact {
             Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
             _ => ray.hit_exactly(triangle),
         }
-    }
-
-    #[inline(always)]
-    fn evaluate_sheared(
-        _ray: &TriangleRay,
-        _corners: &Corners,
-        _sheared: &Weights<f32>,
-        _z: &[f32; 3],
-    ) -> Option<TriangleHit> {
-        None
     }
 
     #[inline(always)]
