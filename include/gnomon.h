@@ -20,6 +20,10 @@
 //       next.t_min = 0, next.t_max = INFINITY;
 //   }
 //
+// Light
+//   Sources, solid angles and sampling take lengths for metres, as glTF has them, and say the unit in the name: lm, cd, lx, nt
+//   (cd/m^2), W, sr, rad. gnomon_irradiance adds up what arrives at a point, with the scene's shadows.
+//
 // Errors
 //   Functions that can fail return a GnomonStatus; gnomon_last_error() gives the calling thread's last failure as
 //   one sentence. Outputs are written only on success. Numbers for structures, precisions and the like enter as
@@ -153,6 +157,10 @@
 // Such a triangle is left out and counted in the stats; the others keep their ids.
 #define GNOMON_INVALID_SKIP 1u
 
+// K_m, the luminous efficacy of light at 555 nm, where the eye is most sensitive [lm/W]. Source: "Principles governing photometry",
+// BIPM monograph, 2nd edition 2019.
+#define GNOMON_MAX_LUMINOUS_EFFICACY_LM_PER_W 683.0
+
 // An immutable scene; any number of threads may query it at a time.
 typedef struct GnomonScene GnomonScene;
 
@@ -207,6 +215,18 @@ typedef struct GnomonQueryOptions {
     // The most threads to use; 0, the default: as many as the machine has; 1: the calling thread alone.
     uint32_t thread_count;
 } GnomonQueryOptions;
+
+// How hard `gnomon_irradiance` tries. Fill it with `gnomon_irradiance_options_init`, then change what you like.
+typedef struct GnomonIrradianceOptions {
+    // `sizeof(GnomonIrradianceOptions)`, so that a program compiled against an older header keeps working.
+    uint32_t struct_size;
+    // As in `GnomonQueryOptions`. The answer does not depend on it.
+    uint32_t thread_count;
+    // Rays towards spheres and triangles, all together; by default 4096.
+    uint64_t sample_count;
+    // The same one gives the same answer; by default 0.
+    uint64_t seed;
+} GnomonIrradianceOptions;
 
 // How a call ended: one of the `GNOMON_OK` and `GNOMON_ERROR_*` numbers. They never change their meaning; a later
 // version may add some.
@@ -362,6 +382,110 @@ typedef struct GnomonSurfacePoint {
     float shape[9];
 } GnomonSurfacePoint;
 
+// A direction, and how densely its neighbourhood is sampled. 16 bytes.
+//
+// Made from two independent numbers u and v, uniform in [0, 1]; other numbers than those are an error. Computed in double, each
+// component rounded once; the density is that of the direction before.
+typedef struct GnomonDirectionSample {
+    // Of unit length.
+    float direction[3];
+    // In 1/sr: it integrates to 1 over all directions. 0: there is nothing to sample.
+    float density_per_sr;
+} GnomonDirectionSample;
+
+// Shines from a point evenly in all directions: glTF's point light. 20 bytes.
+typedef struct GnomonPointSource {
+    // Where it is, in metres, as all lengths here.
+    float position[3];
+    // Not below 0.
+    float intensity_cd;
+    // What arrives is less the nearer that is, and nothing beyond: `gnomon_range_attenuation`. 0 and `INFINITY`: no range.
+    float range_m;
+} GnomonPointSource;
+
+// Shines from a point into a cone: glTF's spot light. 40 bytes.
+typedef struct GnomonSpotSource {
+    // Where it is.
+    float position[3];
+    // On the axis; not below 0.
+    float intensity_cd;
+    // The axis, away from the source, of any length.
+    float direction[3];
+    // As `GnomonPointSource.range_m`.
+    float range_m;
+    // From the axis up to here the intensity is that on the axis; `0 <= inner < outer`.
+    float inner_cone_rad;
+    // From here on there is none; at most pi / 2. In between: `gnomon_spot_attenuation`.
+    float outer_cone_rad;
+} GnomonSpotSource;
+
+// Shines from so far away that its light is the same everywhere: glTF's directional light. 16 bytes.
+typedef struct GnomonDirectionalSource {
+    // In which the light travels, of any length.
+    float direction[3];
+    // On a surface across the direction; not below 0.
+    float illuminance_lx;
+} GnomonDirectionalSource;
+
+// A sphere that looks equally bright from everywhere outside. 20 bytes.
+typedef struct GnomonSphereSource {
+    // Where it is.
+    float centre[3];
+    // Not below 0.
+    float radius;
+    // Not below 0; in cd/m^2.
+    float luminance_nt;
+} GnomonSphereSource;
+
+// Triangles that look equally bright from everywhere on their front side, from which their vertices go counter-clockwise: glTF's
+// emissive material with KHR_materials_emissive_strength.
+typedef struct GnomonAreaSource {
+    // In the caller's memory; they need not be, but may be, those of a geometry of the scene.
+    struct GnomonTriangles triangles;
+    // Not below 0; in cd/m^2.
+    float luminance_nt;
+    // 1: the back shines as well; 0: it does not.
+    uint32_t is_two_sided;
+} GnomonAreaSource;
+
+// All sources of light. Zero it, set `struct_size`, then what there is: a kind of which there are none costs nothing.
+//
+// What arrives is linear in their values: given in W/sr, W/m^2 and W/(m^2 sr) instead, it is in W/m^2.
+typedef struct GnomonSources {
+    // `sizeof(GnomonSources)`, so that a program compiled against an older header keeps working.
+    uint32_t struct_size;
+    // May be NULL where there are none, as all of these.
+    const struct GnomonPointSource *points;
+    // How many.
+    size_t point_count;
+    // See `points`.
+    const struct GnomonSpotSource *spots;
+    // How many.
+    size_t spot_count;
+    // See `points`.
+    const struct GnomonDirectionalSource *directionals;
+    // How many.
+    size_t directional_count;
+    // See `points`.
+    const struct GnomonSphereSource *spheres;
+    // How many.
+    size_t sphere_count;
+    // See `points`.
+    const struct GnomonAreaSource *areas;
+    // How many.
+    size_t area_count;
+} GnomonSources;
+
+// What arrives at a point. 24 bytes.
+typedef struct GnomonIrradiance {
+    // On a surface there, from all sources.
+    double illuminance_lx;
+    // Of the part that is sampled: 0 where nothing is, and where all samples agree.
+    double standard_error_lx;
+    // How many rays were traced.
+    uint64_t ray_count;
+} GnomonIrradiance;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -384,6 +508,9 @@ void gnomon_build_options_init(struct GnomonBuildOptions *options_out);
 
 // Fills in the defaults. A null pointer is an error that `gnomon_last_error` tells.
 void gnomon_query_options_init(struct GnomonQueryOptions *options_out);
+
+// Fills in the defaults. A null pointer is an error that `gnomon_last_error` tells.
+void gnomon_irradiance_options_init(struct GnomonIrradianceOptions *options_out);
 
 // An empty builder, to be freed with `gnomon_scene_builder_free`. NULL if memory ran out.
 struct GnomonSceneBuilder *gnomon_scene_builder_new(void);
@@ -592,6 +719,205 @@ GnomonStatus gnomon_surface_point(const struct GnomonScene *scene,
 GnomonStatus gnomon_offset_origin(const struct GnomonSurfacePoint *point,
                                   const float direction[3],
                                   float origin_out[3]);
+
+// V(lambda), the sensitivity of the eye in daylight relative to its peak at 555 nm: in [0, 1], linear between whole nanometres, 0
+// outside 360 to 830 nm and for a NaN. Source: CIE 1924, as in ISO/CIE 23539:2023, table 1. Any thread may call this.
+double gnomon_photopic_luminosity(double wavelength_nm);
+
+// The luminous flux of a radiant flux of one wavelength: `K_m V(lambda)` lumens a watt. Any thread may call this.
+double gnomon_luminous_flux_lm(double radiant_flux_w,
+                               double wavelength_nm);
+
+// The luminous efficacy of light with a spectrum [lm/W]: what turns each radiant quantity of that light into the luminous one.
+//
+// `spectral_powers` has a power for each of the `count` rising `wavelengths_nm`, in any one unit for each nanometre, and changes
+// linearly in between; a single one is a line. The integral over the tabulated V is exact but for rounding.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, no wavelength, wavelengths that are not finite, positive and rising,
+// powers that are negative or not finite, or all 0. Any thread may call this.
+GnomonStatus gnomon_luminous_efficacy_lm_per_w(const double *wavelengths_nm,
+                                               const double *spectral_powers,
+                                               size_t count,
+                                               double *efficacy_out);
+
+// The intensity of a point that sends its flux out evenly in all directions: `I = flux / 4 pi`; 815 lm are 64.9 cd. Any thread may
+// call this, as all of these.
+double gnomon_isotropic_intensity_cd(double flux_lm);
+
+// The flux of a point that has that intensity in all directions.
+double gnomon_isotropic_flux_lm(double intensity_cd);
+
+// As `gnomon_isotropic_intensity_cd`, radiant.
+double gnomon_isotropic_intensity_w_per_sr(double flux_w);
+
+// As `gnomon_isotropic_flux_lm`, radiant.
+double gnomon_isotropic_flux_w(double intensity_w_per_sr);
+
+// The luminance of a surface that looks alike from all sides of its front (Lambert): `L = M / pi`, in nt, that is cd/m^2. The
+// exitance is in lm/m^2.
+double gnomon_lambertian_luminance_nt(double exitance_lm_per_m2);
+
+// The luminous exitance of a surface with that luminance in all directions of its front: `M = pi L`.
+double gnomon_lambertian_exitance_lm_per_m2(double luminance_nt);
+
+// As `gnomon_lambertian_luminance_nt`, radiant.
+double gnomon_lambertian_radiance_w_per_m2_sr(double exitance_w_per_m2);
+
+// As `gnomon_lambertian_exitance_lm_per_m2`, radiant.
+double gnomon_lambertian_exitance_w_per_m2(double radiance_w_per_m2_sr);
+
+// The flux of a spot by its intensity on the axis; it fades between the cones as glTF says: `gnomon_spot_attenuation`, of which this is
+// the integral in closed form.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, and unless `0 <= inner < outer <= pi / 2`.
+GnomonStatus gnomon_spot_flux_lm(double intensity_cd,
+                                 double inner_cone_rad,
+                                 double outer_cone_rad,
+                                 double *flux_lm_out);
+
+// The intensity on the axis of a spot by its flux: see `gnomon_spot_flux_lm`.
+GnomonStatus gnomon_spot_intensity_cd(double flux_lm,
+                                      double inner_cone_rad,
+                                      double outer_cone_rad,
+                                      double *intensity_cd_out);
+
+// `sin(theta) dtheta dphi`, the solid angle of a small patch at the angle theta from the pole [sr]. Any thread may call this, as
+// all of these.
+double gnomon_differential_solid_angle_sr(double theta_rad,
+                                          double dtheta_rad,
+                                          double dphi_rad);
+
+// The integral of that over a patch of latitude and longitude [sr]; as precise for thin patches as for wide ones.
+double gnomon_patch_solid_angle_sr(double theta_min_rad,
+                                   double theta_max_rad,
+                                   double phi_min_rad,
+                                   double phi_max_rad);
+
+// Of a circular cone around an axis: `2 pi (1 - cos)`, without cancellation [sr]; a NaN unless the half angle is in [0, pi].
+double gnomon_cone_solid_angle_sr(double half_angle_rad);
+
+// Of a cap of a sphere, seen from the sphere's centre: `2 pi height / radius` [sr]; a NaN unless the height is in [0, 2 radius].
+double gnomon_cap_solid_angle_sr(double height,
+                                 double radius);
+
+// Of a sphere whose centre is that far away [sr]: 4 pi from inside, 2 pi from its surface; a NaN where either is negative or a NaN.
+double gnomon_sphere_solid_angle_sr(double distance,
+                                    double radius);
+
+// Of a triangle, seen from a point [sr]: 0 to 2 pi, whichever way round its vertices a, b, c go; 2 pi from a point inside it, 0 from one of
+// its plane outside it.
+//
+// Relative error some 2^-50; within a distance d of an edge, the vertices r away, an absolute one of 2^-50 r / d. A null pointer or
+// a coordinate that is not finite gives a NaN and sets `gnomon_last_error`.
+//
+// Source: Van Oosterom and Strackee 1983, "The solid angle of a plane triangle", equation 8.
+double gnomon_triangle_solid_angle_sr(const float point[3],
+                                      const float a[3],
+                                      const float b[3],
+                                      const float c[3]);
+
+// Of a planar polygon, which may be concave, seen from a point [sr].
+//
+// `vertices` has three floats (x, y, z) for each of the `vertex_count` vertices, in order around the border; fewer than three cover
+// nothing. A border that is not planar counts each direction as often as it goes around it, up to multiples of 4 pi. Accuracy: as a fan
+// of triangles, see `gnomon_triangle_solid_angle_sr`.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, a coordinate that is not finite, or a count that no memory can hold;
+// `GNOMON_ERROR_OUT_OF_MEMORY`.
+GnomonStatus gnomon_polygon_solid_angle_sr(const float point[3],
+                                           const float *vertices,
+                                           size_t vertex_count,
+                                           double *solid_angle_sr_out);
+
+// Of an axis-aligned box, seen from a point [sr]: 4 pi from inside, 2 pi from a face, pi from an edge, pi / 2 from a corner. A box with
+// `lower` above `upper` on an axis covers nothing. Accuracy and bad input: as `gnomon_triangle_solid_angle_sr`.
+double gnomon_box_solid_angle_sr(const float point[3],
+                                 const float lower[3],
+                                 const float upper[3]);
+
+// A direction uniform over the whole sphere: its density is `1 / 4 pi`. Any thread may call this, as all of these.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, and u or v outside [0, 1].
+GnomonStatus gnomon_sample_sphere(double u,
+                                  double v,
+                                  struct GnomonDirectionSample *sample_out);
+
+// A direction uniform over the side of a normal: its density is `1 / 2 pi`. The normal may have any length.
+//
+// Errors: as `gnomon_sample_sphere`, and a normal that is zero or not finite.
+GnomonStatus gnomon_sample_hemisphere(const float normal[3],
+                                      double u,
+                                      double v,
+                                      struct GnomonDirectionSample *sample_out);
+
+// A direction on the side of a normal with the density `cosine / pi`: as a Lambertian surface scatters. Errors: as
+// `gnomon_sample_hemisphere`.
+GnomonStatus gnomon_sample_cosine_hemisphere(const float normal[3],
+                                             double u,
+                                             double v,
+                                             struct GnomonDirectionSample *sample_out);
+
+// A direction uniform over a cone around an axis of any length: its density is one over `gnomon_cone_solid_angle_sr`.
+//
+// Errors: as `gnomon_sample_hemisphere`, and a half angle that is not in (0, pi].
+GnomonStatus gnomon_sample_cone(const float axis[3],
+                                double half_angle_rad,
+                                double u,
+                                double v,
+                                struct GnomonDirectionSample *sample_out);
+
+// A direction from a point towards a triangle, uniform in solid angle, for small triangles too: its density is one over
+// `gnomon_triangle_solid_angle_sr`; 0 where that is 0.
+//
+// Rounded to float it may pass a triangle that it meets by less than the rounding. Errors: as `gnomon_sample_sphere`, and
+// coordinates that are not finite. Source: Arvo 1995, "Stratified sampling of spherical triangles"; Peters 2021, "BRDF importance
+// sampling for polygonal lights", section 4.
+GnomonStatus gnomon_sample_triangle(const float point[3],
+                                    const float a[3],
+                                    const float b[3],
+                                    const float c[3],
+                                    double u,
+                                    double v,
+                                    struct GnomonDirectionSample *sample_out);
+
+// How bright the sources make a surface at a point, with shadows: the illuminance [lx] on the side of `normal`.
+//
+// `scene` is what may be in the way; NULL: nothing is. `normal` may have any length. `options` may be NULL for the defaults.
+//
+// A point, spot or direction takes a ray and is exact but for rounding. Spheres and triangles are known in closed form where nothing
+// hides them, to about 2^-50 over the angle under which a triangle is seen. Where a scene may hide them, `sample_count` random rays, towards
+// all of them together in proportion to what they would send, tell which share arrives; `standard_error_lx` says how far off that is. If
+// all of them arrive the answer is the closed form, if none does it is 0, both without an error: of N rays less than 3 / N then may be
+// hidden, or not, with 95 % confidence. The same seed gives the same answer, on any number of threads.
+//
+// What touches the point, or lies within 2^-22 of the distance from the source, is not in the way: sources may be part of the scene.
+// For a point on a surface take the origin that `gnomon_offset_origin` gives for the normal, so that the surface is not in its own way.
+//
+// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, a normal of length 0, whatever is not finite, negative values, cones and ranges
+// that are none, indices out of range (the message names the source, and the triangle), a point or spot source right at the point, a
+// `sample_count` below 2 where it matters; `GNOMON_ERROR_OUT_OF_MEMORY`. Any number of threads may call this on one scene.
+//
+// Sources: Lambert 1760, "Photometria" (polygons; as in Arvo 1995, "Analytic methods for simulated light transport", section 2.5.1);
+// Snyder 1996, "Area light sources for real-time graphics" (spheres); Khronos, KHR_lights_punctual.
+GnomonStatus gnomon_irradiance(const struct GnomonScene *scene,
+                               const struct GnomonSources *sources,
+                               const float point[3],
+                               const float normal[3],
+                               const struct GnomonIrradianceOptions *options,
+                               struct GnomonIrradiance *irradiance_out);
+
+// The share of a spot's intensity at an angle from its axis: `clamp((cos - cos outer) / (cos inner - cos outer), 0, 1)^2`; a NaN unless
+// `0 <= inner < outer <= pi / 2`, and `gnomon_last_error` says why. Any thread may call this. Source: Khronos, KHR_lights_punctual,
+// "Inner and outer cone angles".
+double gnomon_spot_attenuation(double angle_rad,
+                               double inner_cone_rad,
+                               double outer_cone_rad);
+
+// The share of a source's intensity that a range leaves at a distance: `max(min(1 - (distance / range)^4, 1), 0)`, besides the inverse
+// square law; a range of 0 or `INFINITY` is none and leaves all. Any thread may call this. Source: Khronos, KHR_lights_punctual,
+// "Range property".
+double gnomon_range_attenuation(double distance_m,
+                                double range_m);
 
 // The version of the library that answers, as `major * 10000 + minor * 100 + patch`.
 //

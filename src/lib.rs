@@ -9,9 +9,10 @@
 //! - `u` and `v` are the weights of the second and third vertex; of a sphere they are 0.
 //!
 //! The C interface in [`ffi`] is the product; the Rust types below it are what it is made of.
-//! The layers, each using only those to its right: `ffi -> scene -> accel -> geometry -> math`.
+//! The layers, each using only those to its right: `ffi -> radiometry -> scene -> accel -> geometry -> math`.
 
 pub mod ffi;
+pub mod radiometry;
 
 mod accel;
 mod geometry;

@@ -19,8 +19,20 @@ fn assert_committed(name: &str, expected: &str) {
 }
 
 /// The files of the interface in the order in which a reader wants them.
-const SOURCES: [&str; 8] =
-    ["types.rs", "status.rs", "options.rs", "builder.rs", "scene.rs", "query.rs", "surface_point.rs", "version.rs"];
+const SOURCES: [&str; 12] = [
+    "types.rs",
+    "status.rs",
+    "options.rs",
+    "builder.rs",
+    "scene.rs",
+    "query.rs",
+    "surface_point.rs",
+    "photometry.rs",
+    "solid_angle.rs",
+    "sampling.rs",
+    "irradiance.rs",
+    "version.rs",
+];
 
 fn generated_header() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -36,9 +48,9 @@ fn generated_header() -> String {
     lines.replace("\n\n\n", "\n\n").replace("\n\n\n", "\n\n") + "\n"
 }
 
-/// All constants are `uint32_t`: `#define NAME 1` gets a `u`.
+/// All whole constants are `uint32_t`: `#define NAME 1` gets a `u`.
 fn unsigned_constant(line: &str) -> String {
-    let is_number = line.starts_with("#define ") && line.ends_with(|c: char| c.is_ascii_digit());
+    let is_number = line.starts_with("#define ") && line.ends_with(|c: char| c.is_ascii_digit()) && !line.contains('.');
     if is_number { format!("{line}u") } else { line.to_owned() }
 }
 

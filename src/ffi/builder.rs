@@ -47,7 +47,7 @@ pub unsafe extern "C-unwind" fn gnomon_scene_builder_add_triangles(
         // SAFETY: the caller's promise.
         let triangles = unsafe { required(triangles, "triangles") }?;
         // SAFETY: the caller's promise.
-        let view = unsafe { view(triangles) }?;
+        let view = unsafe { triangle_view(triangles) }?;
         let geometry_id = builder.0.add_triangles(&view)?;
         if !geometry_id_out.is_null() {
             // SAFETY: the caller's promise.
@@ -113,7 +113,7 @@ pub unsafe extern "C-unwind" fn gnomon_scene_builder_free(builder: *mut GnomonSc
 
 /// # Safety
 /// Where the pointers are not null, the memory that the counts and strides span is readable and stays as it is.
-unsafe fn view(mesh: &GnomonTriangles) -> Result<TriangleView<'_>, Failure> {
+pub(super) unsafe fn triangle_view(mesh: &GnomonTriangles) -> Result<TriangleView<'_>, Failure> {
     let stride = stride("position_stride", mesh.position_stride, PositionView::ELEMENT_BYTES)?;
     // SAFETY: the caller's promise.
     let positions = unsafe { positions("positions", mesh.positions, mesh.vertex_count, stride) }?;

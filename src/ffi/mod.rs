@@ -4,19 +4,27 @@
 #![expect(unsafe_code, reason = "the door to C: raw pointers come in here and nowhere else")]
 
 mod builder;
+mod irradiance;
 mod options;
+mod photometry;
 mod pointers;
 mod query;
+mod sampling;
 mod scene;
+mod solid_angle;
 mod status;
 mod surface_point;
 mod types;
 mod version;
 
 pub use builder::*;
+pub use irradiance::*;
 pub use options::*;
+pub use photometry::*;
 pub use query::*;
+pub use sampling::*;
 pub use scene::*;
+pub use solid_angle::*;
 pub use status::*;
 pub use surface_point::*;
 pub use types::*;

@@ -5,6 +5,7 @@ use std::ffi::c_void;
 use super::pointers::output;
 use super::status::{Failure, guard};
 use crate::accel::{Precision, Quality, Structure};
+use crate::radiometry::IrradianceOptions;
 use crate::scene::{BuildOptions, InvalidTriangles};
 use crate::simd::Isa;
 
@@ -118,10 +119,25 @@ pub struct GnomonQueryOptions {
     pub thread_count: u32,
 }
 
+/// How hard `gnomon_irradiance` tries. Fill it with `gnomon_irradiance_options_init`, then change what you like.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct GnomonIrradianceOptions {
+    /// `sizeof(GnomonIrradianceOptions)`, so that a program compiled against an older header keeps working.
+    pub struct_size: u32,
+    /// As in `GnomonQueryOptions`. The answer does not depend on it.
+    pub thread_count: u32,
+    /// Rays towards spheres and triangles, all together; by default 4096.
+    pub sample_count: u64,
+    /// The same one gives the same answer; by default 0.
+    pub seed: u64,
+}
+
 const _: () = assert!(std::mem::offset_of!(GnomonBuildOptions, memory_limit_bytes) == 32);
 #[cfg(target_pointer_width = "64")]
 const _: () = assert!(size_of::<GnomonBuildOptions>() == 64);
 const _: () = assert!(size_of::<GnomonQueryOptions>() == 8);
+const _: () = assert!(size_of::<GnomonIrradianceOptions>() == 24);
 
 impl GnomonBuildOptions {
     /// The first header ended with `progress_user`.
@@ -204,6 +220,23 @@ impl GnomonQueryOptions {
     }
 }
 
+impl GnomonIrradianceOptions {
+    const DEFAULT: Self = Self { struct_size: size_of::<Self>() as u32, thread_count: 0, sample_count: 4096, seed: 0 };
+
+    /// The caller's options, or the defaults for NULL.
+    ///
+    /// # Safety
+    /// `pointer` is null or points to a `struct_size` and as many bytes as it says.
+    pub(super) unsafe fn read(pointer: *const Self) -> Result<Self, Failure> {
+        // SAFETY: the caller's promise.
+        unsafe { read_versioned(pointer, Self::DEFAULT, size_of::<Self>(), "GnomonIrradianceOptions") }
+    }
+
+    pub(super) fn parse(&self) -> IrradianceOptions {
+        IrradianceOptions { sample_count: self.sample_count, seed: self.seed, thread_count: self.thread_count }
+    }
+}
+
 fn structure(number: u32) -> Result<Structure, Failure> {
     Ok(match number {
         GNOMON_STRUCTURE_AUTO => Structure::Auto,
@@ -268,7 +301,7 @@ pub(super) fn unknown(field: &str, number: u32) -> Failure {
 /// # Safety
 /// `pointer` is null or points to a `u32` that states a size, and to as many bytes as it says. `T` is a C struct of
 /// plain numbers and pointers that begins with that size.
-unsafe fn read_versioned<T: Copy>(
+pub(super) unsafe fn read_versioned<T: Copy>(
     pointer: *const T,
     defaults: T,
     first_bytes: usize,
@@ -324,6 +357,19 @@ pub unsafe extern "C-unwind" fn gnomon_query_options_init(options_out: *mut Gnom
     guard(|| {
         // SAFETY: the caller's promise.
         unsafe { output(options_out, "options_out") }?.write(GnomonQueryOptions::DEFAULT);
+        Ok(())
+    });
+}
+
+/// Fills in the defaults. A null pointer is an error that `gnomon_last_error` tells.
+///
+/// # Safety
+/// `options_out` is null or points to a `GnomonIrradianceOptions`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn gnomon_irradiance_options_init(options_out: *mut GnomonIrradianceOptions) {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        unsafe { output(options_out, "options_out") }?.write(GnomonIrradianceOptions::DEFAULT);
         Ok(())
     });
 }

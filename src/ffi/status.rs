@@ -37,6 +37,15 @@ impl Failure {
     pub(super) fn invalid(message: impl Into<String>) -> Self {
         Self { status: GNOMON_ERROR_INVALID_ARGUMENT, message: message.into() }
     }
+
+    pub(super) fn out_of_memory(message: impl Into<String>) -> Self {
+        Self { status: GNOMON_ERROR_OUT_OF_MEMORY, message: message.into() }
+    }
+
+    /// With what it happened in before the message.
+    pub(super) fn within(self, what: &str) -> Self {
+        Self { message: format!("{what}: {}", self.message), ..self }
+    }
 }
 
 impl From<BuildError> for Failure {
@@ -96,6 +105,14 @@ pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> GnomonStatus 
         Ok(()) => GNOMON_OK,
         Err(failure) => report(failure),
     }
+}
+
+/// Runs the body of a call that gives a number: a NaN where there is none.
+pub(super) fn number_or_nan(body: impl FnOnce() -> Result<f64, Failure>) -> f64 {
+    caught(body).unwrap_or_else(|failure| {
+        report(failure);
+        f64::NAN
+    })
 }
 
 /// As [`guard`], for a body that gives something.

@@ -23,10 +23,16 @@ impl<'a> PositionView<'a> {
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = [f32; 3]> {
-        (0..self.count).map(|index| {
-            let at = index * self.stride;
-            std::array::from_fn(|axis| f32::from_ne_bytes(read(self.bytes, at + 4 * axis)))
-        })
+        (0..self.count).map(|index| self.at(index))
+    }
+
+    /// `None` where there is no such vertex.
+    pub(crate) fn get(&self, index: usize) -> Option<[f32; 3]> {
+        (index < self.count).then(|| self.at(index))
+    }
+
+    fn at(&self, index: usize) -> [f32; 3] {
+        std::array::from_fn(|axis| f32::from_ne_bytes(read(self.bytes, index * self.stride + 4 * axis)))
     }
 }
 

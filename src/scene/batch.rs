@@ -42,25 +42,17 @@ where
         const RUN: usize = 256;
 
         let run_count = self.rays.len().div_ceil(RUN);
-        let pool = if self.thread_count == 1 || run_count <= 1 { None } else { threads::shared_pool() };
         let answer = |place: &mut MaybeUninit<T>, found: Q::Answer| {
             place.write(found.into());
         };
-        let Some(pool) = pool else {
+        if self.thread_count == 1 || run_count <= 1 {
             let mut run = Some((self.rays, self.answers));
             return self.question.answer_runs::<A, P, R, _>(accel, || run.take(), answer);
-        };
-
-        let worker_count = match self.thread_count {
-            0 => pool.current_num_threads(),
-            count => pool.current_num_threads().min(count as usize),
-        };
+        }
         let runs = Mutex::new(self.rays.chunks(RUN).zip(self.answers.chunks_mut(RUN)));
         let next_run = || runs.lock().expect("taking a run does not panic").next();
-        pool.scope(|scope| {
-            for _ in 0..worker_count {
-                scope.spawn(|_| self.question.answer_runs::<A, P, R, _>(accel, next_run, answer));
-            }
+        threads::run_workers(self.thread_count, || {
+            self.question.answer_runs::<A, P, R, _>(accel, next_run, answer);
         });
     }
 }

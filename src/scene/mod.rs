@@ -17,6 +17,7 @@ pub use builder::SceneBuilder;
 pub use error::{BuildError, SurfaceError};
 pub use options::{BuildOptions, InvalidTriangles};
 pub use surface_point::SurfacePoint;
+pub(crate) use threads::run_workers;
 
 use crate::accel::{AnyAccel, Copies, Places, Precision, Stats};
 use crate::geometry::{Aabb, Sphere, Triangle};
