@@ -9,7 +9,9 @@
 pub(super) struct Estimate {
     known_mean: f64,
     count: u64,
+    /// Of those whose weight is not 0.
     lit_count: u64,
+    hidden_count: u64,
     /// Of `w - known_mean`, so that nothing cancels.
     weights: f64,
     squared_weights: f64,
@@ -25,10 +27,11 @@ impl Estimate {
     }
 
     pub(super) fn add(&mut self, weight: f64, is_lit: bool) {
+        self.count += 1;
+        self.lit_count += u64::from(is_lit && weight > 0.0);
+        self.hidden_count += u64::from(!is_lit && weight > 0.0);
         let weight = weight - self.known_mean;
         let sample = if is_lit { weight } else { -self.known_mean };
-        self.count += 1;
-        self.lit_count += u64::from(is_lit);
         self.weights += weight;
         self.squared_weights += weight * weight;
         self.samples += sample;
@@ -40,6 +43,7 @@ impl Estimate {
     pub(super) fn merge(&mut self, other: &Self) {
         self.count += other.count;
         self.lit_count += other.lit_count;
+        self.hidden_count += other.hidden_count;
         self.weights += other.weights;
         self.squared_weights += other.squared_weights;
         self.samples += other.samples;
@@ -47,12 +51,17 @@ impl Estimate {
         self.products += other.products;
     }
 
+    /// How many of the samples had to be looked at.
+    pub(super) fn ray_count(&self) -> u64 {
+        self.lit_count + self.hidden_count
+    }
+
     /// The mean and its standard error. Where all samples agree, the known mean or 0, both exactly, and no error.
     pub(super) fn mean_and_error(&self) -> (f64, f64) {
         if self.lit_count == 0 {
             return (0.0, 0.0);
         }
-        if self.lit_count == self.count {
+        if self.hidden_count == 0 {
             return (self.known_mean, 0.0);
         }
         let count = self.count as f64;
@@ -79,7 +88,8 @@ mod tests {
         for weight in [0.5, 0.8, 0.9] {
             estimate.add(weight, true);
         }
-        assert_eq!(estimate.mean_and_error(), (0.7, 0.0));
+        estimate.add(0.0, false);
+        assert_eq!((estimate.mean_and_error(), estimate.ray_count()), ((0.7, 0.0), 3));
         let mut estimate = Estimate::new(0.7);
         for weight in [0.5, 0.8, 0.9] {
             estimate.add(weight, false);

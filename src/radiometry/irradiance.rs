@@ -4,7 +4,7 @@ use std::sync::Mutex;
 
 use glam::DVec3;
 use rand_pcg::Pcg64Mcg;
-use rand_pcg::rand_core::Rng;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 
 use super::direction::{finite, unit};
 use super::error::RadiometryError;
@@ -34,16 +34,16 @@ pub struct IrradianceEstimate {
     pub illuminance: Illuminance,
     /// Of the part that is sampled; 0 where nothing is.
     pub standard_error: Illuminance,
-    /// How many were traced.
+    /// How many were traced: fewer than samples where a sphere reaches below the horizon.
     pub ray_count: u64,
 }
 
 /// What arrives at a point, on the side of its normal, from all sources; `scene` is what may be in the way.
 ///
 /// Points, spots and directions take a ray each. Spheres and triangles are known in closed form where nothing hides them (see
-/// [`projected_polygon_sr`](super::projected_polygon_sr)); where something may, random rays towards them tell which share arrives, and how far that is off. Where all of these
-/// arrive, the answer is the closed form, where none does 0, both without an error: with `N` rays less than `3 / N` may be hidden, or not,
-/// with 95 % confidence.
+/// [`projected_polygon_sr`](super::projected_polygon_sr)); where something may, random rays towards them tell which share
+/// arrives, and how far that is off. Where all of these arrive, the answer is the closed form, where none does 0, both without
+/// an error: of `N` rays less than `3 / N` may be hidden, or not, with 95 % confidence.
 ///
 /// What lies within `gamma(3)` of the distance from a source, or touches the point, is not in the way: a source may be part of the scene.
 pub fn irradiance(
@@ -96,8 +96,7 @@ impl View<'_> {
         };
         let Some(scene) = self.scene else { return Ok(direct.illuminance) };
         self.ray_count += 1;
-        let distance = if direct.is_infinite { f64::INFINITY } else { 1.0 };
-        let is_hidden = scene.occluded(&shadow_ray(&self.receiver, direct.to_source, distance));
+        let is_hidden = scene.occluded(&shadow_ray(&self.receiver, direct.to_source, direct.distance));
         Ok(if is_hidden { Illuminance::new(0.0) } else { direct.illuminance })
     }
 
@@ -112,7 +111,7 @@ impl View<'_> {
             return Err(RadiometryError::Value { what: "sample_count", value: sample_count as f64, expected });
         }
         let estimate = self.estimate(scene, patches)?;
-        self.ray_count += sample_count;
+        self.ray_count += estimate.ray_count();
         let (mean, error) = estimate.mean_and_error();
         Ok((Illuminance::new(mean), Illuminance::new(error)))
     }
@@ -120,6 +119,8 @@ impl View<'_> {
     fn estimate(&self, scene: &Scene, patches: &Patches) -> Result<Estimate, RadiometryError> {
         /// Samples of a chunk: enough that taking the next one does not show.
         const CHUNK: u64 = 1 << 12;
+        /// 2^64 over the golden ratio: keeps the seeds of neighbouring streams far apart.
+        const GOLDEN_RATIO: u64 = 0x9E37_79B9_7F4A_7C15;
 
         let sample_count = self.options.sample_count;
         let chunk_count = usize::try_from(sample_count.div_ceil(CHUNK)).unwrap_or(usize::MAX);
@@ -133,12 +134,14 @@ impl View<'_> {
         run_workers(thread_count, || {
             while let Some((index, chunk)) = take(&next_chunk) {
                 // A chunk has a stream of its own, so that it does not matter which thread takes it.
-                let mut rng = Pcg64Mcg::new(u128::from(self.options.seed) << 64 | u128::from(2 * index as u64 + 1));
+                let seed = self.options.seed.wrapping_add((index as u64).wrapping_mul(GOLDEN_RATIO));
+                let mut rng = Pcg64Mcg::seed_from_u64(seed);
                 let count = CHUNK.min(sample_count - CHUNK * index as u64);
                 for _ in 0..count {
                     let sample = patches.sample([(); 3].map(|()| uniform(&mut rng)));
                     let ray = shadow_ray(&self.receiver, sample.to_source, sample.distance);
-                    chunk.add(sample.weight, !scene.occluded(&ray));
+                    // A way from below the horizon needs no ray.
+                    chunk.add(sample.weight, sample.weight > 0.0 && !scene.occluded(&ray));
                 }
             }
         });

@@ -156,9 +156,9 @@ pub(super) struct Receiver {
 /// What a source would send to a receiver, were nothing in the way, and where it is to be looked for.
 pub(super) struct Direct {
     pub(super) illuminance: Illuminance,
-    /// From the receiver; the source lies at its end, or infinitely far away.
+    /// From the receiver, of unit length.
     pub(super) to_source: DVec3,
-    pub(super) is_infinite: bool,
+    pub(super) distance: f64,
 }
 
 impl PointSource {
@@ -181,7 +181,8 @@ impl DirectionalSource {
         let to_source = -unit("direction", self.direction.to_array())?;
         let cosine = receiver.normal.dot(to_source);
         let illuminance = Illuminance::new(illuminance_lx) * cosine;
-        Ok((cosine > 0.0 && illuminance_lx > 0.0).then_some(Direct { illuminance, to_source, is_infinite: true }))
+        let direct = Direct { illuminance, to_source, distance: f64::INFINITY };
+        Ok((illuminance.value() > 0.0).then_some(direct))
     }
 }
 
@@ -198,18 +199,15 @@ fn shine(
         let expected = "above 0 (0 and infinity: no range)";
         return Err(RadiometryError::Value { what: "range_m", value: f64::from(range_m), expected });
     }
-    let to_source = finite("position", position.to_array())? - receiver.point;
-    let distance_m = to_source.length();
-    if distance_m == 0.0 {
+    let way = finite("position", position.to_array())? - receiver.point;
+    let distance = way.length();
+    if distance == 0.0 {
         return Err(RadiometryError::AtReceiver);
     }
-    let cosine = receiver.normal.dot(to_source) / distance_m;
-    if !(cosine > 0.0) {
-        return Ok(None);
-    }
-    let share = range_attenuation(distance_m, f64::from(range_m)) * attenuation(-to_source / distance_m);
-    let illuminance = intensity.irradiance(distance_m, cosine) * share;
-    Ok((illuminance.value() > 0.0).then_some(Direct { illuminance, to_source, is_infinite: false }))
+    let to_source = way / distance;
+    let share = range_attenuation(distance, f64::from(range_m)) * attenuation(-to_source);
+    let illuminance = intensity.irradiance(distance, receiver.normal.dot(to_source)) * share;
+    Ok((illuminance.value() > 0.0).then_some(Direct { illuminance, to_source, distance }))
 }
 
 pub(super) fn not_negative(what: &'static str, value: f32) -> Result<f64, RadiometryError> {
