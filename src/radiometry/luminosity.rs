@@ -1,7 +1,6 @@
 //! How bright light of a wavelength looks, and so from radiant to luminous quantities.
 
 use super::error::RadiometryError;
-use super::quantity::{LuminousFlux, RadiantFlux};
 
 /// `K_m`, the luminous efficacy of light at 555 nm, where the eye is most sensitive [lm/W].
 ///
@@ -47,20 +46,6 @@ impl LuminousEfficacy {
     /// [lm/W]
     pub fn value(self) -> f64 {
         self.lm_per_w
-    }
-}
-
-impl RadiantFlux {
-    /// How bright that looks.
-    pub fn luminous(self, efficacy: LuminousEfficacy) -> LuminousFlux {
-        LuminousFlux::new(self.value() * efficacy.lm_per_w)
-    }
-}
-
-impl LuminousFlux {
-    /// What it takes to look so bright.
-    pub fn radiant(self, efficacy: LuminousEfficacy) -> RadiantFlux {
-        RadiantFlux::new(self.value() / efficacy.lm_per_w)
     }
 }
 
@@ -610,6 +595,7 @@ const PHOTOPIC_LUMINOSITY: [f64; 471] = [
 
 #[cfg(test)]
 mod tests {
+    use super::super::quantity::RadiantFlux;
     use super::*;
 
     #[test]

@@ -15,6 +15,7 @@ use std::iter::Sum;
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Sub};
 
+use super::luminosity::LuminousEfficacy;
 use super::source::Cone;
 
 /// What light carries, in watts.
@@ -49,6 +50,20 @@ macro_rules! quantities {
             #[doc = concat!("In ", $radiant_unit, " or ", $luminous_unit, ".")]
             pub const fn value(self) -> f64 {
                 self.value
+            }
+        }
+
+        impl $name<Radiant> {
+            /// How bright that looks.
+            pub fn luminous(self, efficacy: LuminousEfficacy) -> $name<Luminous> {
+                $name::new(self.value * efficacy.value())
+            }
+        }
+
+        impl $name<Luminous> {
+            /// What it takes to look so bright.
+            pub fn radiant(self, efficacy: LuminousEfficacy) -> $name<Radiant> {
+                $name::new(self.value / efficacy.value())
             }
         }
 
@@ -220,6 +235,19 @@ mod tests {
         assert_eq!(radiance.lambertian_exitance().flux(3.0).value(), 6.0 * PI);
         // Beneath an endless sky the projected solid angle is pi, and what arrives is what the sky radiates.
         assert_eq!(radiance.irradiance(PI).value(), radiance.lambertian_exitance().value());
+    }
+
+    #[test]
+    fn every_quantity_has_its_luminous_counterpart() {
+        let green = LuminousEfficacy::new(683.0);
+        assert_eq!(RadiantEnergy::new(1.0).luminous(green), LuminousEnergy::new(683.0));
+        assert_eq!(RadiantFlux::new(1.0).luminous(green), LuminousFlux::new(683.0));
+        // The candela's definition.
+        assert_eq!(RadiantIntensity::new(1.0 / 683.0).luminous(green), LuminousIntensity::new(1.0));
+        assert_eq!(Irradiance::new(1.0).luminous(green), Illuminance::new(683.0));
+        assert_eq!(RadiantExitance::new(1.0).luminous(green), LuminousExitance::new(683.0));
+        assert_eq!(Radiance::new(1.0).luminous(green), Luminance::new(683.0));
+        assert_eq!(Luminance::new(683.0).radiant(green), Radiance::new(1.0));
     }
 
     #[test]
