@@ -59,7 +59,8 @@ impl<F: LeafForm> WideBvh<F> {
         let (ray, boxes) = (around.ray(), AlongX::new(around.point()));
         let each = Each::<F, _, true> { bvh: self, kept: around };
         let mut stack = Aligned(Stack::new_const());
-        Walk::<AnyHit, F, _>::new::<Accurate>(self, &ray, &mut stack.0, each).run::<Accurate, _, _>(Scalar, &boxes);
+        let mut walk = Walk::<AnyHit, F, _>::new::<Accurate>(self, &ray, &mut stack.0, each);
+        walk.run_from_root::<Accurate, _, _>(Scalar, &boxes);
     }
 }
 
@@ -79,10 +80,10 @@ impl<F: LeafForm, P: PrecisionMode> SimdKernel for OfferHits<'_, '_, F, P> {
         let mut stack = Aligned(Stack::new_const());
         let mut walk = Walk::<Every, F, _>::new::<P>(bvh, ray, &mut stack.0, Each::<F, _, false> { bvh, kept: all });
         match ObliqueSlabs::new(ray, &bvh.corners) {
-            Some(slabs) => walk.run::<P, S, _>(simd, &Oblique::new(slabs)),
+            Some(slabs) => walk.run_from_root::<P, S, _>(simd, &Oblique::new(slabs)),
             None => {
                 walk.leaves.check_range();
-                walk.run::<P, S, _>(simd, &Plain::new(SlabRay::new(ray, &bvh.bounds), ray.t_min))
+                walk.run_from_root::<P, S, _>(simd, &Plain::new(SlabRay::new(ray, &bvh.bounds), ray.t_min))
             }
         };
     }

@@ -90,9 +90,16 @@ where
         let ray = ray.into();
         match ObliqueSlabs::new(&ray, &bvh.corners) {
             Some(slabs) => {
+                let boxes = Oblique::new(slabs);
+                let best = Best::none(&ray);
+                let Some(start) = Start::at_root(simd, bvh, &boxes, best.t_max()) else {
+                    let mut tally = Q::Tally::default();
+                    tally.visit_node();
+                    return then(None, tally);
+                };
                 let mut stack = Aligned(Stack::new_const());
-                let mut walk = Walk::<Q, F, Best>::new::<P>(bvh, &ray, &mut stack.0, Best::none(&ray));
-                let found = walk.find::<P, S, _>(simd, &Oblique::new(slabs));
+                let mut walk = Walk::<Q, F, Best>::new::<P>(bvh, &ray, &mut stack.0, best);
+                let found = walk.find::<P, S, _>(simd, &boxes, start);
                 then(found.map(|hit| hit.on_surface(&ray)), walk.tally)
             }
             // In a frame of its own, so that ordinary rays do not pay for its registers.
@@ -124,7 +131,7 @@ impl<Q: Query, P: PrecisionMode, F: LeafForm> SimdKernel for AlongPlanes<'_, Q, 
         let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
         let mut walk = Walk::<Q, F, Best>::new::<P>(bvh, &ray, &mut stack.0, Best::none(&ray));
         walk.leaves.check_range();
-        let found = walk.find::<P, S, _>(simd, &boxes);
+        let found = walk.start(simd, &boxes).and_then(|start| walk.find::<P, S, _>(simd, &boxes, start));
         (found.map(|hit| hit.on_surface(&ray)), walk.tally)
     }
 }
@@ -173,10 +180,36 @@ pub(super) struct Walk<'a, Q: Query, F: LeafForm, K> {
     tally: Q::Tally,
 }
 
+/// Where a walk begins: the root, if it is a leaf, else those of its children that the ray meets.
+pub(super) struct Start<S: Simd> {
+    child: Child,
+    hits: u32,
+    enter: S::F32x8,
+}
+
+impl<S: Simd> Start<S> {
+    /// `None` where the ray meets none of them.
+    #[inline(always)]
+    pub(super) fn at_root(simd: S, bvh: &WideBvh<impl LeafForm>, boxes: &impl Boxes, t_max: f32) -> Option<Self> {
+        let child = bvh.root;
+        if child.is_leaf() {
+            return Some(Self { child, hits: 0, enter: simd.splat(0.0) });
+        }
+        let node = &bvh.nodes.as_slice()[child.node_index()];
+        let (hits, enter) = boxes.prepare(simd).test(simd, node, boxes.scale_time(t_max));
+        (hits != 0).then_some(Self { child, hits, enter })
+    }
+}
+
 impl<Q: Query, F: LeafForm> Walk<'_, Q, F, Best> {
     #[inline(always)]
-    fn find<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> Option<ClosestHit<F::Primitive>> {
-        if self.run::<P, S, B>(simd, boxes) {
+    fn find<P: PrecisionMode, S: Simd, B: Boxes>(
+        &mut self,
+        simd: S,
+        boxes: &B,
+        start: Start<S>,
+    ) -> Option<ClosestHit<F::Primitive>> {
+        if self.run::<P, S, B>(simd, boxes, start) {
             Some(ClosestHit::UNSPECIFIED)
         } else if Q::FIRST_HIT_ENDS {
             None
@@ -189,28 +222,36 @@ impl<Q: Query, F: LeafForm> Walk<'_, Q, F, Best> {
 impl<'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'a, Q, F, K> {
     #[inline(always)]
     pub(super) fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray, stack: &'a mut Stack, kept: K) -> Self {
-        stack.push(Pending::new(0, bvh.root));
         Self { bvh, stack, leaves: F::Test::new::<P>(bvh, ray), kept, tally: Q::Tally::default() }
+    }
+
+    /// `None` where the ray meets nothing.
+    #[inline(always)]
+    fn start<S: Simd>(&self, simd: S, boxes: &impl Boxes) -> Option<Start<S>> {
+        Start::at_root(simd, self.bvh, boxes, self.kept.t_max())
+    }
+
+    /// See [`Walk::run`].
+    #[inline(always)]
+    pub(super) fn run_from_root<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> bool {
+        self.start(simd, boxes).is_some_and(|start| self.run::<P, S, B>(simd, boxes, start))
     }
 
     /// Whether what is kept ended it.
     #[inline(always)]
-    pub(super) fn run<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B) -> bool {
+    fn run<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B, start: Start<S>) -> bool {
         let bvh = self.bvh;
         let nodes = bvh.nodes.as_slice();
         let t_min = simd.splat(self.leaves.t_min());
         let box_test = boxes.prepare(simd);
+        let mut t_max = self.kept.t_max();
+        let mut scaled_t_max = boxes.scale_time(t_max);
+        let mut child = start.child;
+        if start.hits != 0 {
+            self.tally.visit_node();
+            child = self.descend::<S, B>(simd, &nodes[child.node_index()], start.hits, start.enter);
+        }
         loop {
-            let t_max = self.kept.t_max();
-            let scaled_t_max = boxes.scale_time(t_max);
-            let last = Pending::last(B::order(scaled_t_max));
-            // A child that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
-            let mut child = loop {
-                let Some(pending) = self.stack.pop() else { return false };
-                if Q::FIRST_HIT_ENDS || pending <= last {
-                    break pending.child();
-                }
-            };
             loop {
                 if child.is_leaf() {
                     self.tally.test_primitives(child.triangles().1);
@@ -221,19 +262,35 @@ impl<'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'a, Q, F, K> {
                 }
                 self.tally.visit_node();
                 let node = &nodes[child.node_index()];
-                let (mut hits, enter) = box_test.test(simd, node, scaled_t_max);
+                let (hits, enter) = box_test.test(simd, node, scaled_t_max);
                 if hits == 0 {
                     break;
                 }
-                let first = next_slot(&mut hits);
-                child = if hits == 0 {
-                    node.children[first]
-                } else if Q::FIRST_HIT_ENDS {
-                    wait_in_any_order(bvh, node, first, hits, self.stack)
-                } else {
-                    wait_in_order::<F, B>(bvh, node, first, hits, &simd.store(enter), self.stack)
-                };
+                child = self.descend::<S, B>(simd, node, hits, enter);
             }
+            t_max = self.kept.t_max();
+            scaled_t_max = boxes.scale_time(t_max);
+            let last = Pending::last(B::order(scaled_t_max));
+            // A child that the ray enters exactly where the best hit is may hold an equal hit with a lower id.
+            child = loop {
+                let Some(pending) = self.stack.pop() else { return false };
+                if Q::FIRST_HIT_ENDS || pending <= last {
+                    break pending.child();
+                }
+            };
+        }
+    }
+
+    /// The child that the walk goes on with; the others that are hit wait.
+    #[inline(always)]
+    fn descend<S: Simd, B: Boxes>(&mut self, simd: S, node: &WideNode, mut hits: u32, enter: S::F32x8) -> Child {
+        let first = next_slot(&mut hits);
+        if hits == 0 {
+            node.children[first]
+        } else if Q::FIRST_HIT_ENDS {
+            wait_in_any_order(self.bvh, node, first, hits, self.stack)
+        } else {
+            wait_in_order::<F, B>(self.bvh, node, first, hits, &simd.store(enter), self.stack)
         }
     }
 }
