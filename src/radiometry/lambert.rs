@@ -120,8 +120,10 @@ pub fn projected_sphere_sr(point: DVec3, normal: DVec3, centre: DVec3, radius: f
 #[cfg(test)]
 mod tests {
     use gauss_quad::GaussLegendre;
+    use proptest::prelude::*;
 
     use super::super::quadrature::over_triangle;
+    use super::super::solid_angle::triangle_sr;
     use super::*;
 
     #[test]
@@ -212,5 +214,37 @@ mod tests {
         }
         assert_eq!(projected_sphere_sr(DVec3::ZERO, DVec3::Z, DVec3::Z, 1.0), 0.0);
         assert_eq!(projected_sphere_sr(DVec3::ZERO, DVec3::Z, DVec3::Z, 0.0), 0.0);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
+
+        /// Above the horizon of a normal and of its opposite together there is as much as the difference tells; and no more than the
+        /// solid angle.
+        #[test]
+        fn any_triangle_has_its_parts_above_and_below(
+            point in prop::array::uniform3(-1.0..1.0f64), a in prop::array::uniform3(-1.0..1.0f64),
+            b in prop::array::uniform3(-1.0..1.0f64), c in prop::array::uniform3(-1.0..1.0f64),
+            normal in prop::array::uniform3(-1.0..1.0f64),
+        ) {
+            let [point, a, b, c, normal] = [point, a, b, c, normal].map(DVec3::from_array);
+            prop_assume!(normal.length() > 0.1);
+            let normal = normal.normalize();
+            let height = (b - a).cross(c - a).normalize_or_zero().dot(point - a).abs();
+            prop_assume!(height > 1e-3);
+            let above = projected_polygon_sr(point, normal, &[a, b, c]);
+            let below = projected_polygon_sr(point, -normal, &[a, b, c]);
+            prop_assert!(above >= 0.0 && below >= 0.0 && above <= PI && below <= PI);
+            prop_assert!(above + below <= triangle_sr(point, [a, b, c]) + 1e-11);
+            let part = |rays: ArrayVec<DVec3, 4>| -> f64 {
+                (2..rays.len()).map(|i| triangle_sr(DVec3::ZERO, [rays[0], rays[i - 1], rays[i]])).sum()
+            };
+            let rays = [a, b, c].map(|vertex| vertex - point);
+            let parts = part(above_horizon(normal, rays)) + part(above_horizon(-normal, rays));
+            prop_assert!((parts - triangle_sr(point, [a, b, c])).abs() < 1e-10);
+            // As an integral over the surface.
+            let expected = over_triangle(point, [a, b, c], 1e-6, &|direction| normal.dot(direction).max(0.0));
+            prop_assert!((above - expected).abs() < 1e-4, "{above}, not {expected}");
+        }
     }
 }

@@ -132,6 +132,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use gauss_quad::GaussLegendre;
+    use proptest::prelude::*;
 
     use super::super::quadrature::over_triangle;
     use super::*;
@@ -296,5 +297,45 @@ mod tests {
         let mut c = b;
         c[last] = d[last];
         over_triangle(point, [plane, b, c], 1e-15, &|_| 1.0) + over_triangle(point, [plane, c, d], 1e-15, &|_| 1.0)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+        /// Any triangle from any point: its parts add up, and neither turning nor scaling changes it.
+        #[test]
+        fn any_triangle_is_the_sum_of_its_parts(
+            point in prop::array::uniform3(-1.0..1.0f64), a in prop::array::uniform3(-1.0..1.0f64),
+            b in prop::array::uniform3(-1.0..1.0f64), c in prop::array::uniform3(-1.0..1.0f64),
+            share in 0.0..1.0f64, exponent in -20..20i32,
+        ) {
+            let [point, a, b, c] = [point, a, b, c].map(DVec3::from_array);
+            let whole = triangle_sr(point, [a, b, c]);
+            prop_assert!((0.0..=2.0 * PI).contains(&whole));
+            // Where the point is near an edge or the plane of a part, a rounding of the cut moves it by that much.
+            let cut = b.lerp(c, share);
+            let parts = triangle_sr(point, [a, b, cut]) + triangle_sr(point, [a, cut, c]);
+            let nearest = [a, b, c, cut].map(|vertex| vertex.distance(point)).into_iter().fold(f64::MAX, f64::min);
+            let height = (b - a).cross(c - a).normalize().dot(point - a).abs();
+            let tolerance = 1e-14 / (nearest.min(height)).max(1e-14);
+            prop_assert!((whole - parts).abs() <= tolerance, "{whole} {parts} {tolerance:e}");
+            let scale = 2f64.powi(exponent);
+            prop_assert_eq!(triangle_sr(scale * point, [a, b, c].map(|vertex| scale * vertex)), whole);
+            let turned = |v: DVec3| DVec3::new(v.y, v.z, v.x);
+            let difference = (triangle_sr(turned(point), [a, b, c].map(turned)) - whole).abs();
+            prop_assert!(difference <= tolerance, "{difference:e} {tolerance:e}");
+        }
+
+        /// A tetrahedron around a point covers all directions, one beside it each direction as often from both sides.
+        #[test]
+        fn closed_surfaces_cover_all_or_nothing(vertices in prop::array::uniform4(prop::array::uniform3(-1.0..1.0f64))) {
+            let [a, b, c, d] = vertices.map(DVec3::from_array);
+            let volume = (b - a).cross(c - a).dot(d - a);
+            prop_assume!(volume.abs() > 1e-3);
+            let sides = [[a, b, c], [a, d, b], [b, d, c], [c, d, a]];
+            let all = |point: DVec3| sides.into_iter().map(|side| signed_triangle_sr(point, side)).sum::<f64>().abs();
+            prop_assert!((all(0.25 * (a + b + c + d)) - SPHERE_SR).abs() < 1e-11);
+            prop_assert!(all(DVec3::new(2.0, 2.0, 2.0)) < 1e-11);
+        }
     }
 }
