@@ -90,8 +90,9 @@ impl Patches {
         luminance: Luminance,
     ) -> Result<(), RadiometryError> {
         let [a, b, c] = vertices;
-        let faces_receiver = (b - a).cross(c - a).dot(a) < 0.0;
-        if !(faces_receiver || is_two_sided) {
+        // 0 where it is seen end on, or has no area.
+        let height = -(b - a).cross(c - a).dot(a);
+        if !(height > 0.0 || is_two_sided && height < 0.0) {
             return Ok(());
         }
         let part: ArrayVec<DVec3, 4> = above_horizon(self.normal, vertices);
