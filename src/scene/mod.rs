@@ -48,6 +48,11 @@ impl Scene {
         self.bounds
     }
 
+    /// What decides hits.
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
     /// What the build made, and what the scene holds now.
     pub fn stats(&self) -> Stats {
         let place_bytes = self.triangle_places.bytes() + self.sphere_places.bytes();
