@@ -29,10 +29,12 @@ impl LuminousEfficacy {
         if let &[wavelength_nm] = wavelengths_nm {
             return Ok(Self::of_wavelength(wavelength_nm));
         }
+        // In units of the largest, so that no sum overflows.
+        let largest = spectral_powers.iter().copied().fold(0.0, f64::max);
         let (mut power, mut visible) = (0.0, 0.0);
         for (ends, powers) in wavelengths_nm.windows(2).zip(spectral_powers.windows(2)) {
-            let segment = Segment { ends: [ends[0], ends[1]], powers: [powers[0], powers[1]] };
-            power += 0.5 * (powers[0] + powers[1]) * (ends[1] - ends[0]);
+            let segment = Segment { ends: [ends[0], ends[1]], powers: [powers[0] / largest, powers[1] / largest] };
+            power += 0.5 * (segment.powers[0] + segment.powers[1]) * (ends[1] - ends[0]);
             visible += segment.visible_power();
         }
         Ok(Self { lm_per_w: MAX_LUMINOUS_EFFICACY_LM_PER_W * visible / power })
