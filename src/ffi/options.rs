@@ -318,7 +318,7 @@ pub(super) unsafe fn read_versioned<T: Copy>(
     let size = unsafe { pointer.cast::<u32>().read_unaligned() } as usize;
     if !(first_bytes..=LARGEST).contains(&size) {
         return Err(Failure::invalid(format!(
-            "{name}: struct_size is {size}, not {known}; fill the options with their _init function first"
+            "{name}: struct_size is {size}, not {known}; set it to sizeof({name}), as an _init function does"
         )));
     }
     // SAFETY: the caller's promise.

@@ -102,8 +102,10 @@ pub unsafe extern "C-unwind" fn gnomon_polygon_solid_angle_sr(
         let mut wide = Vec::new();
         wide.try_reserve_exact(vertex_count)
             .map_err(|_| Failure::out_of_memory(format!("there is no memory for {vertex_count} vertices")))?;
-        for &vertex in vertices {
-            wide.push(finite("a vertex", vertex)?);
+        for (index, &vertex) in vertices.iter().enumerate() {
+            let vertex =
+                finite("position", vertex).map_err(|cause| Failure::from(cause).within(&format!("vertex {index}")))?;
+            wide.push(vertex);
         }
         solid_angle_sr_out.write(polygon_sr(point, &wide));
         Ok(())
