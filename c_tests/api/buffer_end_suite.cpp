@@ -96,3 +96,40 @@ TEST_CASE("rays_and_answers_are_touched_to_their_end_alone") {
         }
     }
 }
+
+TEST_CASE("sources_and_lamps_are_read_to_their_end_alone") {
+    const SceneHandle scene = build_scene({unit_triangle(9)});
+    const GuardedArray point(std::vector<float>{0, 0, 0}), normal(std::vector<float>{0, 0, 1});
+    const GuardedArray points(std::vector<GnomonPointSource>(3, {{0, 0, 1}, 1, 0}));
+    const GuardedArray spots(std::vector<GnomonSpotSource>(3, {{0, 0, 1}, 1, {0, 0, -1}, 0, 0, 1}));
+    const GuardedArray directionals(std::vector<GnomonDirectionalSource>(3, {{0, 0, -1}, 1}));
+    const GuardedArray spheres(std::vector<GnomonSphereSource>(3, {{0, 0, 2}, 1, 1}));
+    // 16 bytes a vertex and 8 a triangle, but for the last ones.
+    const GuardedArray positions(std::vector<float>{0, 0, 1, kNan, 1, 0, 1, kNan, 0, 1, 1});
+    const GuardedArray indices(std::vector<std::uint16_t>{0, 2, 1, 0xFFFF, 0, 2, 1});
+    const GuardedArray areas(
+        std::vector<GnomonAreaSource>(3, {{positions.data(), 16, 3, indices.data(), GNOMON_INDEX_U16, 8, 2}, 1, 0}));
+    const GuardedArray sources(std::vector<GnomonSources>(1, {sizeof(GnomonSources), points.data(), 3, spots.data(), 3,
+                                                              directionals.data(), 3, spheres.data(), 3, areas.data(), 3}));
+    const GuardedArray options(std::vector<GnomonIrradianceOptions>(1, {sizeof(GnomonIrradianceOptions), 1, 64, 0}));
+    const GuardedArray answer(std::vector<GnomonIrradiance>(1));
+    REQUIRE_MESSAGE(
+        gnomon_irradiance(scene.get(), sources.data(), point.data(), normal.data(), options.data(), answer.data()) == GNOMON_OK,
+        last_error());
+    CHECK((answer.data()->illuminance_lx > 9 && answer.data()->ray_count == 9 + 64));
+}
+
+TEST_CASE("polygons_spectra_and_samples_are_touched_to_their_end_alone") {
+    const GuardedArray point(std::vector<float>{0, 0, 0}), normal(std::vector<float>{0, 0, 1});
+    const GuardedArray vertices(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+    const GuardedArray number(std::vector<double>{7});
+    REQUIRE(gnomon_polygon_solid_angle_sr(point.data(), vertices.data(), 3, number.data()) == GNOMON_OK);
+    CHECK(*number.data() ==
+          gnomon_triangle_solid_angle_sr(point.data(), vertices.data(), vertices.data() + 3, vertices.data() + 6));
+    const GuardedArray wavelengths(std::vector<double>{500, 600}), powers(std::vector<double>{1, 2});
+    REQUIRE(gnomon_luminous_efficacy_lm_per_w(wavelengths.data(), powers.data(), 2, number.data()) == GNOMON_OK);
+    CHECK(*number.data() > 100);
+    const GuardedArray sample(std::vector<GnomonDirectionSample>(1));
+    REQUIRE(gnomon_sample_cosine_hemisphere(normal.data(), 0, 0, sample.data()) == GNOMON_OK);
+    CHECK(sample.data()->direction[2] == 1);
+}

@@ -87,3 +87,58 @@ ASSERT_OFFSET(GnomonSceneStats, peak_build_bytes, 80);
 ASSERT_OFFSET(GnomonSceneStats, build_seconds, 88);
 ASSERT_OFFSET(GnomonSceneStats, sah_cost, 96);
 ASSERT_OFFSET(GnomonSceneStats, sphere_count, 104);
+
+ASSERT_SIZE(GnomonIrradianceOptions, 24);
+ASSERT_OFFSET(GnomonIrradianceOptions, struct_size, 0);
+ASSERT_OFFSET(GnomonIrradianceOptions, thread_count, 4);
+ASSERT_OFFSET(GnomonIrradianceOptions, sample_count, 8);
+ASSERT_OFFSET(GnomonIrradianceOptions, seed, 16);
+
+ASSERT_SIZE(GnomonDirectionSample, 16);
+ASSERT_OFFSET(GnomonDirectionSample, direction, 0);
+ASSERT_OFFSET(GnomonDirectionSample, density_per_sr, 12);
+
+ASSERT_SIZE(GnomonPointSource, 20);
+ASSERT_OFFSET(GnomonPointSource, position, 0);
+ASSERT_OFFSET(GnomonPointSource, intensity_cd, 12);
+ASSERT_OFFSET(GnomonPointSource, range_m, 16);
+
+ASSERT_SIZE(GnomonSpotSource, 40);
+ASSERT_OFFSET(GnomonSpotSource, position, 0);
+ASSERT_OFFSET(GnomonSpotSource, intensity_cd, 12);
+ASSERT_OFFSET(GnomonSpotSource, direction, 16);
+ASSERT_OFFSET(GnomonSpotSource, range_m, 28);
+ASSERT_OFFSET(GnomonSpotSource, inner_cone_rad, 32);
+ASSERT_OFFSET(GnomonSpotSource, outer_cone_rad, 36);
+
+ASSERT_SIZE(GnomonDirectionalSource, 16);
+ASSERT_OFFSET(GnomonDirectionalSource, direction, 0);
+ASSERT_OFFSET(GnomonDirectionalSource, illuminance_lx, 12);
+
+ASSERT_SIZE(GnomonSphereSource, 20);
+ASSERT_OFFSET(GnomonSphereSource, centre, 0);
+ASSERT_OFFSET(GnomonSphereSource, radius, 12);
+ASSERT_OFFSET(GnomonSphereSource, luminance_nt, 16);
+
+ASSERT_SIZE(GnomonAreaSource, 64);
+ASSERT_OFFSET(GnomonAreaSource, triangles, 0);
+ASSERT_OFFSET(GnomonAreaSource, luminance_nt, 56);
+ASSERT_OFFSET(GnomonAreaSource, is_two_sided, 60);
+
+ASSERT_SIZE(GnomonSources, 88);
+ASSERT_OFFSET(GnomonSources, struct_size, 0);
+ASSERT_OFFSET(GnomonSources, points, 8);
+ASSERT_OFFSET(GnomonSources, point_count, 16);
+ASSERT_OFFSET(GnomonSources, spots, 24);
+ASSERT_OFFSET(GnomonSources, spot_count, 32);
+ASSERT_OFFSET(GnomonSources, directionals, 40);
+ASSERT_OFFSET(GnomonSources, directional_count, 48);
+ASSERT_OFFSET(GnomonSources, spheres, 56);
+ASSERT_OFFSET(GnomonSources, sphere_count, 64);
+ASSERT_OFFSET(GnomonSources, areas, 72);
+ASSERT_OFFSET(GnomonSources, area_count, 80);
+
+ASSERT_SIZE(GnomonIrradiance, 24);
+ASSERT_OFFSET(GnomonIrradiance, illuminance_lx, 0);
+ASSERT_OFFSET(GnomonIrradiance, standard_error_lx, 8);
+ASSERT_OFFSET(GnomonIrradiance, ray_count, 16);
