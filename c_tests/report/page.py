@@ -28,11 +28,12 @@ def script_safe(text):
     return text.replace("</", "<\\/")
 
 
-def page(data, picture, chart_js):
-    """`chart_js` may be empty: the page then has tables alone."""
+def page(data, picture, light, chart_js):
+    """`light`, the chapter, may be empty, and `chart_js`: the page then has tables alone."""
     marks = {
         "STYLE": included("report_style.inc") + (HERE / "report.css").read_text(encoding="utf-8"),
         "PICTURE": picture,
+        "LIGHT": light,
         "METHOD": method(),
         "RESULTS": script_safe(json.dumps(data, ensure_ascii=False)),
         "CHART_JS": chart_js,

@@ -47,11 +47,11 @@ def words(row, error):
 
 
 class Panels:
-    """Axes side by side over one speed scale, and what each dot says under the pointer."""
+    """Axes side by side, in one row or more, and what each dot says under the pointer."""
 
-    def __init__(self, count):
-        self.figure = Figure(figsize=(3.6 * count, 4))
-        self.axes = list(self.figure.subplots(1, count, squeeze=False, sharex=True)[0])
+    def __init__(self, count, row_count=1, **shared):
+        self.figure = Figure(figsize=(3.6 * count, 4 * row_count))
+        self.axes = list(self.figure.subplots(row_count, count, squeeze=False, **shared).flat)
         self.titles = {}
 
     def dot(self, axes, row, y, text):
@@ -156,7 +156,7 @@ def speed_against_error(data):
     rows, hard = data["charts"][0]["dots"], data["hard_dots"]
     scenes = len(data["common_scenes"])
     with matplotlib.rc_context(STYLE):
-        panels = Panels(3 if hard else 2)
+        panels = Panels(3 if hard else 2, sharex=True)
         draw_distance(panels, panels.axes[0], rows)
         draw_decisions(panels, panels.axes[1], rows, f"Wrong hits on {counted(scenes, 'scene')}")
         if hard:

@@ -112,6 +112,26 @@ function barSection() {
     ["", row => row.pass == null ? "" : row.pass ? "kept" : "not kept", row => row.pass ? "good" : "bad"]]));
 }
 
+// ---- light
+
+const tiny = value => value == null ? "–" : value >= 0.001 ? significant(value) : value.toExponential(1);
+
+function convergenceSection() {
+  return element("details", {}, element("summary", { className: "quiet", textContent: "The same in figures" }), table(results.convergence, [
+    ["lamp", row => row.lamp], ["estimator", row => row.estimator], numeric("samples", "samples", count), numeric("places", "places", count),
+    numeric("error", "rms_error", tiny), numeric("stated", "rms_standard_error", tiny), numeric("seconds", "seconds", tiny)]));
+}
+
+const furnaceName = { path: "path tracing", whitted: "Whitted’s method" };
+const furnaceMark = (value, row) => Math.abs(value - 1) <= 4 * row.standard_error + 1e-6 ? "good" : "bad";  // pictures are in float
+
+function furnaceSection() {
+  return captioned("The furnace decides", "Bodies that reflect or pass all light, in an environment of 1 nt: all they show must be 1 nt, or the method loses or makes light. " +
+    "Means of the pixels of a kind, and their standard errors.", table(results.furnace, [
+    ["method", row => furnaceName[row.method]], ["pixels that show", row => row.class], numeric("count", "pixel_count", count),
+    numeric("mean, nt", "mean", fixed(5), furnaceMark), numeric("standard error", "standard_error", tiny)]));
+}
+
 // ---- the page
 
 const put = (id, ...content) => document.getElementById(id).append(...content);
@@ -119,6 +139,8 @@ put("chart", chartSection());
 if (results.bars.length) put("bars", barSection());
 if (results.populations.length) put("populations", populationSection());
 if (results.cases.length) put("cases", caseSection());
+if (results.convergence.length) put("convergence", convergenceSection());
+if (results.furnace.length) put("furnace", furnaceSection());
 
 const { settings, left_out: leftOut } = results;
 const calls = { single: "each ray written right before its call", prefilled: "single calls over an array written before", batch: "one call for all rays" };

@@ -3,6 +3,7 @@
     smoke.py CHART_JS OUTPUT_FOLDER
 """
 
+import base64
 import importlib.util
 import itertools
 import json
@@ -62,6 +63,19 @@ def hard_results():
     return {"seed": 1, "rays": 40000, "seconds": 1.5, "populations": populations, "cases": cases, "bars": bars}
 
 
+def light_results():
+    figure = itertools.count(1)
+    rows = [{"lamp": lamp, "estimator": estimator, "samples": samples, "places": 16, "rms_error": 1 / (samples + next(figure)),
+             "rms_standard_error": 0.9 / samples, "seconds": samples / 1e7}
+            for lamp in ("rectangle", "sphere") for estimator in ("gnomon_irradiance", "plain, lamp") for samples in (256, 1024)]
+    classes = [{"class": "diffuse", "mean": 0.125, "standard_error": 0.25, "sample_count": 4, "pixel_count": 4711}]
+    return {"seed": 1, "seconds": 2.5, "convergence": rows}, {"methods": [{"method": "path", "classes": classes}, {"method": "whitted", "classes": classes}]}
+
+
+# One grey pixel.
+PNG = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==")
+
+
 class Page(HTMLParser):
     """The page's elements, properly nested, and the texts of its scripts."""
 
@@ -92,7 +106,8 @@ class Page(HTMLParser):
 
 def check_page(text, compare, hard):
     page = Page(text)
-    check(not page.links, f"the page asks for {page.links}")
+    links = [link for link in page.links if not link.startswith("data:image/png;base64,")]
+    check(not links, f"the page asks for {links}")
     check(not re.search(r"url\((?!#)|@import", text.split("<script>")[0]), "the style asks for something")
     results = json.loads(page.data["results"])
     dots = {(chart["scene"], chart["ray_kind"], dot["engine"], dot["structure"], dot["precision"]): dot
@@ -105,6 +120,16 @@ def check_page(text, compare, hard):
         check(all(dot[key] == error[key] for key in ("rays", "missed", "t_ulp_p99")), f"errors of {where}")
     check(all(results[key] == hard[key] for key in ("populations", "cases", "bars")), "hard results differ")
     check_summary(results, dots, compare)
+
+
+def check_light(text, light, furnace):
+    page = Page(text)
+    results = json.loads(page.data["results"])
+    check(results["convergence"] == light["convergence"], "convergence differs")
+    check(len(results["furnace"]) == 2 and all(row["mean"] == 0.125 for row in results["furnace"]), f"furnace: {results['furnace']}")
+    check(page.links.count("data:image/png;base64," + base64.b64encode(PNG).decode("ascii")) == 2, "the pictures are not both in the page")
+    for row in light["convergence"]:
+        check(text.count(f"error {row['rms_error']:.2g}, stated") >= 2, f"{row} is not in both panels")
 
 
 def check_summary(results, dots, compare):
@@ -154,7 +179,17 @@ def main():
     check("hard rays" not in (folder / "speed.svg").read_text(encoding="utf-8"), "a panel of hard rays that were not traced")
     run(["--compare", folder / "compare.json", "--hard", folder / "hard.json", *outputs])
     page = (folder / "index.html").read_text(encoding="utf-8")
+    check('id="light"' not in page, "a chapter on light that was not measured")
     check_page(page, compare, hard)
+    light, furnace = light_results()
+    for name, results in (("light", light), ("furnace", furnace)):
+        (folder / f"{name}.json").write_text(json.dumps(results), encoding="utf-8")
+    (folder / "box.png").write_bytes(PNG)
+    run(["--compare", folder / "compare.json", "--hard", folder / "hard.json", "--light", folder / "light.json", "--furnace",
+         folder / "furnace.json", "--path-png", folder / "box.png", "--whitted-png", folder / "box.png", *outputs])
+    page = (folder / "index.html").read_text(encoding="utf-8")
+    check_page(page, compare, hard)
+    check_light(page, light, furnace)
     results = json.loads(Page(page).data["results"])
     check_picture((folder / "speed.svg").read_text(encoding="utf-8"), results["charts"][0]["dots"])
 
