@@ -52,13 +52,20 @@ report: SCENE ?= $(scenes)
 report: ARGS ?= --structures brute_force,grid,octree,kd_tree,bsp_tree,bvh,wide_bvh --most-triangles brute_force:2500,bsp_tree:150000 \
                 --ray-count 20000 --oracle-rays 4000 --repeats 3 --build-repeats 1 --threads $(JOBS)
 report: HARD_ARGS ?= --rays 5000
-report: packages-report build ## Speed against error of every structure and precision, and the hard cases, about 15 minutes, or with HARD_ARGS= an hour; SCENE= and OUT= as above
-	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-hard
+report: CORNELL_ARGS ?= --width 400 --height 400 --samples 64 --exposure 7.7
+report: packages-report build ## Speed against error of every structure and precision, the hard cases, and light, about 16 minutes, or with HARD_ARGS= an hour; SCENE= and OUT= as above
+	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-hard gnomon-light gnomon-render
 	@mkdir -p $(OUT)
 	@status=0; \
 	$(BUILD)/bin/gnomon-compare --json $(OUT)/compare.json --precisions all $(ARGS) $(SCENE) || status=$$?; \
 	[ $$status -gt 1 ] || $(BUILD)/bin/gnomon-hard --json $(OUT)/hard.json $(HARD_ARGS) || status=$$?; \
+	[ $$status -gt 1 ] || $(BUILD)/bin/gnomon-light --json $(OUT)/light.json $(LIGHT_ARGS) || status=$$?; \
+	[ $$status -gt 1 ] || $(BUILD)/bin/gnomon-render gen:furnace --furnace $(OUT)/furnace.json || status=$$?; \
+	for method in path whitted; do \
+	    [ $$status -gt 1 ] || $(BUILD)/bin/gnomon-render gen:cornell --method $$method --out $(OUT)/cornell-$$method $(CORNELL_ARGS) || status=$$?; \
+	done; \
 	[ $$status -gt 1 ] || $(python) c_tests/report/report.py --compare $(OUT)/compare.json --hard $(OUT)/hard.json \
+	    --light $(OUT)/light.json --furnace $(OUT)/furnace.json --path-png $(OUT)/cornell-path.png --whitted-png $(OUT)/cornell-whitted.png \
 	    --html $(OUT)/index.html --svg $(OUT)/speed-against-error.svg || status=$$?; \
 	[ $$status -gt 1 ] || echo "results: $(OUT)/index.html and $(OUT)/speed-against-error.svg"; \
 	exit $$status
