@@ -3,7 +3,7 @@
 # Quick when nothing is missing. Without root or a password-less sudo it prints the one line to type, and fails.
 set -eu
 
-required="cmake g++ make pkg-config libtinygltf-dev nlohmann-json3-dev libcli11-dev libstb-dev libgmp-dev doctest-dev libjs-chart.js assimp-testmodels python3"
+required="cmake g++ make pkg-config libtinygltf-dev nlohmann-json3-dev libcli11-dev libstb-dev libopenexr-dev libgmp-dev doctest-dev libjs-chart.js assimp-testmodels python3"
 optional="libembree-dev"
 case $1 in
 report)

@@ -6,7 +6,9 @@ namespace render {
 
 namespace {
 
-bool is_lit(const Rgb& light) { return std::ranges::any_of(light, [](float channel) { return channel > 0; }); }
+bool is_lit(const Rgb& light) {
+    return std::ranges::any_of(light, [](float channel) { return channel > 0; });
+}
 
 }  // namespace
 

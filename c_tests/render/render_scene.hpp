@@ -13,8 +13,8 @@ namespace render {
 using harness::Vec3d;
 using harness::Vec3f;
 
-/// Linear, Rec. 709 primaries. For light each channel is in the quantity's unit, so that (L, L, L) is white of L nt; its luminance
-/// is 0.2126 R + 0.7152 G + 0.0722 B.
+/// Linear, Rec. 709 primaries. For light each channel is in the quantity's unit, so that (L, L, L) is white of L nt; its
+/// luminance is 0.2126 R + 0.7152 G + 0.0722 B.
 using Rgb = std::array<float, 3>;
 
 struct Texture {
@@ -28,7 +28,7 @@ enum class MaterialKind { diffuse, mirror, glass };
 struct Material {
     std::string name;
     MaterialKind kind = MaterialKind::diffuse;
-    Rgb base_color{1, 1, 1};     // in [0, 1]: reflectance of diffuse and mirror, transmittance of glass
+    Rgb base_color{1, 1, 1};      // in [0, 1]: reflectance of diffuse and mirror, transmittance of glass
     int base_color_texture = -1;  // index into RenderScene::textures, multiplies base_color
     float index_of_refraction = 1.5F;
     Rgb emission_nt{0, 0, 0};  // radiated by the front side, by both where is_double_sided
