@@ -1,96 +1,17 @@
-// load_gltf: nodes and primitives become world-space meshes. Bind pose: skins, morph targets and animations are not applied.
+// load_gltf: triangles alone.
 #include <filesystem>
-#include <map>
-#include <string>
-#include <utility>
 
 #include "scene/gltf_document.hpp"
-#include "scene/gltf_nodes.hpp"
-#include "scene/gltf_primitive.hpp"
+#include "scene/gltf_expand.hpp"
 #include "scene/load.hpp"
 
 namespace harness {
 
-namespace {
-
-/// Instances multiply: a small file can ask for any amount of memory. The engines count triangles and vertices of a scene in 32
-/// bits, Embree in 31.
-constexpr std::uint64_t most_expanded = std::uint64_t(1) << 31;
-
-/// Runs `act` and puts the primitive's name before what it throws.
-template <typename Act>
-auto naming_primitive(int mesh_id, std::size_t primitive_id, Act act) {
-    try {
-        return act();
-    } catch (const SceneError& error) {
-        throw SceneError("mesh " + std::to_string(mesh_id) + " primitive " + std::to_string(primitive_id) + ": " + error.what());
-    }
-}
-
-/// One primitive at one place.
-struct PrimitiveInstance {
-    const MeshInstance* instance;
-    std::size_t primitive_id;
-};
-
-/// All primitives that have triangles, in walk order. Throws SceneError when together they pass the limits, before any of them is
-/// read.
-std::vector<PrimitiveInstance> primitive_instances(const tinygltf::Model& model, const std::vector<MeshInstance>& instances) {
-    std::vector<PrimitiveInstance> result;
-    PrimitiveSize total{0, 0};
-    for (const MeshInstance& instance : instances) {
-        const auto& primitives = model.meshes[std::size_t(instance.mesh_id)].primitives;
-        if (primitives.empty()) throw SceneError("mesh " + std::to_string(instance.mesh_id) + " has no primitives");
-        for (std::size_t i = 0; i < primitives.size(); ++i) {
-            const PrimitiveSize size =
-                naming_primitive(instance.mesh_id, i, [&] { return primitive_size(model, primitives[i]); });
-            if (size.triangle_count == 0) continue;
-            total.triangle_count += size.triangle_count;
-            total.vertex_count += size.vertex_count;
-            if (total.triangle_count > most_expanded || total.vertex_count > most_expanded)
-                throw SceneError("more than 2^31 triangles or vertices at node " + std::to_string(instance.node_id));
-            result.push_back({&instance, i});
-        }
-    }
-    return result;
-}
-
-/// A vertex that is not finite, in the file or once rounded to float, is not this loader's to judge: the library rejects or skips
-/// its triangles.
-std::vector<float> transformed(const std::vector<float>& positions, const Affine& transform) {
-    // The product with the identity would turn -0 into 0 and spread one infinity over the vertex.
-    if (transform == Affine{}) return positions;
-    std::vector<float> result(positions.size());
-    for (std::size_t i = 0; i < positions.size(); i += 3) {
-        const Vec3d p = transform.apply({positions[i], positions[i + 1], positions[i + 2]});
-        for (std::size_t axis = 0; axis < 3; ++axis) result[i + axis] = float(p[axis]);
-    }
-    return result;
-}
-
-std::vector<Mesh> expand(const tinygltf::Model& model) {
-    const std::vector<MeshInstance> instances = mesh_instances(model);
-    std::map<std::pair<int, std::size_t>, PrimitiveTriangles> read;  // each primitive once, however many instances it has
-    std::vector<Mesh> meshes;
-    for (const auto& [instance, primitive_id] : primitive_instances(model, instances)) {
-        const tinygltf::Mesh& mesh = model.meshes[std::size_t(instance->mesh_id)];
-        auto found = read.find({instance->mesh_id, primitive_id});
-        if (found == read.end()) {
-            PrimitiveTriangles triangles = naming_primitive(
-                instance->mesh_id, primitive_id, [&, id = primitive_id] { return read_primitive(model, mesh.primitives[id]); });
-            found = read.emplace(std::pair{instance->mesh_id, primitive_id}, std::move(triangles)).first;
-        }
-        meshes.push_back({mesh.name, transformed(found->second.positions, instance->transform), found->second.indices});
-    }
-    return meshes;
-}
-
-}  // namespace
-
 Scene load_gltf(const std::string& path) {
     try {
-        const tinygltf::Model model = read_gltf_document(path);
-        return {std::filesystem::path(path).stem().string(), expand(model)};
+        const tinygltf::Model model = parse_gltf(read_gltf_chunks(path), path);
+        const std::vector<MeshInstance> instances = mesh_instances(model);
+        return {std::filesystem::path(path).stem().string(), expand(model, primitive_instances(model, instances))};
     } catch (const std::exception& error) {  // SceneError, and what the JSON parser, the file system and the allocator throw
         throw SceneError(path + ": " + error.what());
     }

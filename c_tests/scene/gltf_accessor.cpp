@@ -23,20 +23,6 @@ struct ElementRange {
     const unsigned char* element(std::size_t i) const { return bytes.data() + i * stride; }
 };
 
-Bytes view_bytes(const tinygltf::Model& model, int view_id) {
-    const std::string name = "bufferView " + std::to_string(view_id);
-    if (view_id < 0 || std::size_t(view_id) >= model.bufferViews.size()) throw SceneError(name + " does not exist");
-    const tinygltf::BufferView& view = model.bufferViews[std::size_t(view_id)];
-    if (view.buffer < 0 || std::size_t(view.buffer) >= model.buffers.size())
-        throw SceneError(name + ": buffer " + std::to_string(view.buffer) + " does not exist");
-    const Bytes buffer = model.buffers[std::size_t(view.buffer)].data;
-    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
-        throw SceneError(name + ": " + std::to_string(view.byteLength) + " bytes from " + std::to_string(view.byteOffset) +
-                         " on pass the end of buffer " + std::to_string(view.buffer) + ", which has " +
-                         std::to_string(buffer.size()));
-    return buffer.subspan(view.byteOffset, view.byteLength);
-}
-
 ElementRange element_range(const tinygltf::Model& model, int view_id, std::size_t offset, std::size_t count,
                            std::size_t element_bytes) {
     const Bytes view = view_bytes(model, view_id);
@@ -128,6 +114,20 @@ auto naming_accessor(int accessor_id, Read read) {
 
 }  // namespace
 
+std::span<const unsigned char> view_bytes(const tinygltf::Model& model, int view_id) {
+    const std::string name = "bufferView " + std::to_string(view_id);
+    if (view_id < 0 || std::size_t(view_id) >= model.bufferViews.size()) throw SceneError(name + " does not exist");
+    const tinygltf::BufferView& view = model.bufferViews[std::size_t(view_id)];
+    if (view.buffer < 0 || std::size_t(view.buffer) >= model.buffers.size())
+        throw SceneError(name + ": buffer " + std::to_string(view.buffer) + " does not exist");
+    const Bytes buffer = model.buffers[std::size_t(view.buffer)].data;
+    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+        throw SceneError(name + ": " + std::to_string(view.byteLength) + " bytes from " + std::to_string(view.byteOffset) +
+                         " on pass the end of buffer " + std::to_string(view.buffer) + ", which has " +
+                         std::to_string(buffer.size()));
+    return buffer.subspan(view.byteOffset, view.byteLength);
+}
+
 const tinygltf::Accessor& find_accessor(const tinygltf::Model& model, int accessor_id) {
     if (accessor_id < 0 || std::size_t(accessor_id) >= model.accessors.size())
         throw SceneError("accessor " + std::to_string(accessor_id) +
@@ -144,6 +144,28 @@ std::vector<float> read_positions(const tinygltf::Model& model, int accessor_id)
         std::vector<float> positions(accessor.count * 3);
         std::memcpy(positions.data(), elements.data(), elements.size());
         return positions;
+    });
+}
+
+std::vector<float> read_texcoords(const tinygltf::Model& model, int accessor_id) {
+    const tinygltf::Accessor& accessor = find_accessor(model, accessor_id);
+    return naming_accessor(accessor_id, [&] {
+        const bool is_float = accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
+        const bool is_fraction = accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                                 accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+        if (accessor.type != TINYGLTF_TYPE_VEC2 || !(is_float || is_fraction))
+            throw SceneError("TEXCOORD is not VEC2 of FLOAT, UNSIGNED_BYTE or UNSIGNED_SHORT (componentType 5126, 5121, 5123)");
+        const std::size_t component_bytes = is_float ? sizeof(float) : index_bytes(accessor.componentType);
+        const std::vector<unsigned char> elements = read_elements(model, accessor, 2 * component_bytes);
+        std::vector<float> texcoords(accessor.count * 2);
+        if (is_float) {
+            std::memcpy(texcoords.data(), elements.data(), elements.size());
+        } else {
+            const float one = component_bytes == 1 ? 255 : 65535;
+            for (std::size_t i = 0; i < texcoords.size(); ++i)
+                texcoords[i] = float(read_unsigned(&elements[i * component_bytes], component_bytes)) / one;
+        }
+        return texcoords;
     });
 }
 

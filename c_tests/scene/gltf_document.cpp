@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <utility>
 
-#include "scene/glb.hpp"
 #include "scene/gltf_json.hpp"
 #include "scene/load.hpp"
 
@@ -31,21 +31,24 @@ std::string first_line(const std::string& message) {
 
 }  // namespace
 
-tinygltf::Model read_gltf_document(const std::string& path) {
+GlbChunks read_gltf_chunks(const std::string& path) {
+    std::string file = read_file(path);
+    if (path.ends_with(".glb")) return split_glb(file);
+    return {std::move(file), {}};
+}
+
+tinygltf::Model parse_gltf(GlbChunks chunks, const std::string& path) {
     tinygltf::TinyGLTF parser;
     tinygltf::Model model;
     std::string error, warning;
     const std::string folder = std::filesystem::path(path).parent_path().string();
-    const std::string file = read_file(path);
+    chunks.json = geometry_json(chunks.json);
     if (path.ends_with(".glb")) {
-        GlbChunks chunks = split_glb(file);
-        chunks.json = geometry_json(chunks.json);
         const std::string checked = join_glb(chunks);
         parser.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(checked.data()),
                                     unsigned(checked.size()), folder);
     } else {
-        const std::string json = geometry_json(file);
-        parser.LoadASCIIFromString(&model, &error, &warning, json.data(), unsigned(json.size()), folder);
+        parser.LoadASCIIFromString(&model, &error, &warning, chunks.json.data(), unsigned(chunks.json.size()), folder);
     }
     // Also where tinygltf returns true: it then left something out, a primitive without attributes for one.
     if (!error.empty()) throw SceneError(first_line(error));

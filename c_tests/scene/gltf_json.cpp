@@ -18,7 +18,8 @@ using nlohmann::json;
 /// Deeper than any glTF property; far less than the stack holds.
 constexpr int most_nested = 64;
 
-const std::set<std::string> kept_at_root = {"asset", "buffers", "bufferViews", "accessors", "meshes", "nodes", "scenes", "scene"};
+const std::set<std::string> geometry_at_root = {"asset",  "buffers", "bufferViews", "accessors",
+                                                "meshes", "nodes",   "scenes",      "scene"};
 
 /// These replace or multiply geometry: read without them, a file would give other triangles than it means.
 const std::set<std::string> unsupported_extensions = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
@@ -26,13 +27,6 @@ const std::set<std::string> unsupported_extensions = {"KHR_draco_mesh_compressio
 
 /// Of no use to geometry wherever they stand. Accessor bounds (min, max) are claims that nothing here may rely on.
 const std::set<std::string> dropped_everywhere = {"extras", "min", "max", "weights", "targets"};
-
-bool keep(int depth, json::parse_event_t event, json& parsed) {
-    if (depth > most_nested) throw SceneError("JSON nested deeper than " + std::to_string(most_nested));
-    if (event != json::parse_event_t::key) return true;
-    const auto& key = parsed.get_ref<const std::string&>();
-    return depth == 1 ? kept_at_root.count(key) > 0 : dropped_everywhere.count(key) == 0;
-}
 
 /// Ids, counts and byte sizes alike: tinygltf holds some of them in an int.
 bool is_whole(const json& value) {
@@ -126,9 +120,20 @@ void check_types(const json& value, const std::string& path) {
 
 }  // namespace
 
-std::string geometry_json(std::string_view text) {
-    const json document = json::parse(text, keep);
+json parse_gltf_json(std::string_view text, const std::set<std::string>& kept_at_root) {
+    const auto keep = [&](int depth, json::parse_event_t event, json& parsed) {
+        if (depth > most_nested) throw SceneError("JSON nested deeper than " + std::to_string(most_nested));
+        if (event != json::parse_event_t::key) return true;
+        const auto& key = parsed.get_ref<const std::string&>();
+        return depth == 1 ? kept_at_root.contains(key) : !dropped_everywhere.contains(key);
+    };
+    json document = json::parse(text, keep);
     if (!document.is_object()) throw SceneError("the JSON is not an object");
+    return document;
+}
+
+std::string geometry_json(std::string_view text) {
+    const json document = parse_gltf_json(text, geometry_at_root);
     check_types(document, "");
     return document.dump();
 }

@@ -57,15 +57,20 @@ bool is_finite(const Affine& a) {
     return std::ranges::all_of(a.linear, [](const Vec3d& row) { return is_finite(row); }) && is_finite(a.translation);
 }
 
+[[noreturn]] void fail(int node_id, const std::string& what) {
+    throw SceneError("node " + std::to_string(node_id) + ": " + what);
+}
+
 class Walk {
 public:
-    explicit Walk(const tinygltf::Model& model) : model_(model), on_path_(model.nodes.size(), false) {}
+    Walk(const tinygltf::Model& model, const NodeVisitor& visitor)
+        : model_(model), visitor_(visitor), on_path_(model.nodes.size(), false) {}
 
     void visit(int node_id, const Affine& parent, std::size_t level) {
         const tinygltf::Node& node = enter(node_id, level);
         const Affine transform = parent * transform_of(node_id);
         if (!is_finite(transform)) fail(node_id, "the product of the matrices down to it is not finite");
-        if (node.mesh >= 0) instances_.push_back({node_id, check_mesh(node_id), transform});
+        visitor_(node_id, transform);
         for (int child : node.children) {
             if (std::size_t(child) >= model_.nodes.size())
                 fail(node_id,
@@ -75,13 +80,7 @@ public:
         on_path_[std::size_t(node_id)] = false;
     }
 
-    std::vector<MeshInstance> take() { return std::move(instances_); }
-
 private:
-    [[noreturn]] static void fail(int node_id, const std::string& what) {
-        throw SceneError("node " + std::to_string(node_id) + ": " + what);
-    }
-
     const tinygltf::Node& enter(int node_id, std::size_t level) {
         if (on_path_[std::size_t(node_id)]) fail(node_id, "it is its own descendant");
         if (level > deepest_level) fail(node_id, "deeper than " + std::to_string(deepest_level) + " levels");
@@ -98,17 +97,9 @@ private:
         }
     }
 
-    int check_mesh(int node_id) const {
-        const int mesh_id = model_.nodes[std::size_t(node_id)].mesh;
-        if (std::size_t(mesh_id) >= model_.meshes.size())
-            fail(node_id,
-                 "mesh " + std::to_string(mesh_id) + " does not exist: " + std::to_string(model_.meshes.size()) + " meshes");
-        return mesh_id;
-    }
-
     const tinygltf::Model& model_;
+    const NodeVisitor& visitor_;
     std::vector<bool> on_path_;
-    std::vector<MeshInstance> instances_;
     std::size_t visit_count_ = 0;
 };
 
@@ -157,10 +148,22 @@ Affine operator*(const Affine& outer, const Affine& inner) {
     return product;
 }
 
-std::vector<MeshInstance> mesh_instances(const tinygltf::Model& model) {
-    Walk walk(model);
+void walk_nodes(const tinygltf::Model& model, const NodeVisitor& visitor) {
+    Walk walk(model, visitor);
     for (int root : root_nodes(model)) walk.visit(root, Affine{}, 1);
-    return walk.take();
+}
+
+std::vector<MeshInstance> mesh_instances(const tinygltf::Model& model) {
+    std::vector<MeshInstance> instances;
+    walk_nodes(model, [&](int node_id, const Affine& transform) {
+        const int mesh_id = model.nodes[std::size_t(node_id)].mesh;
+        if (mesh_id < 0) return;
+        if (std::size_t(mesh_id) >= model.meshes.size())
+            fail(node_id,
+                 "mesh " + std::to_string(mesh_id) + " does not exist: " + std::to_string(model.meshes.size()) + " meshes");
+        instances.push_back({node_id, mesh_id, transform});
+    });
+    return instances;
 }
 
 }  // namespace harness

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,14 +28,20 @@ struct MeshInstance {
     Affine transform;      // from the mesh to the world; finite
 };
 
-/// Every node with a mesh that the default scene reaches, depth first, children in their order. A node with two parents stands at
-/// both places.
+/// Told of a node and of its transform to the world, which is finite.
+using NodeVisitor = std::function<void(int node_id, const Affine& transform)>;
+
+/// Every node that the default scene reaches, depth first, children in their order. A node with two parents stands at both
+/// places.
 ///
 /// The default scene is the one that "scene" names, else the first; a file without scenes is read as one scene of the nodes that
 /// are nobody's child.
 ///
-/// Throws SceneError for a reference that leads nowhere, a cycle, a transform that is not finite or not affine, and trees beyond
-/// the limits in the code.
+/// Throws SceneError for a reference to a node that leads nowhere, a cycle, a transform that is not finite or not affine, and
+/// trees beyond the limits in the code.
+void walk_nodes(const tinygltf::Model& model, const NodeVisitor& visitor);
+
+/// Those with a mesh, in that order. Throws SceneError, also for a mesh that does not exist.
 std::vector<MeshInstance> mesh_instances(const tinygltf::Model& model);
 
 }  // namespace harness
