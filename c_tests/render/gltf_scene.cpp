@@ -1,10 +1,13 @@
 #include "render/gltf_scene.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
+#include "render/generate.hpp"
 #include "render/gltf_camera.hpp"
 #include "render/gltf_light.hpp"
 #include "render/gltf_material.hpp"
@@ -33,11 +36,9 @@ struct Look {
 class Looks {
 public:
     Looks(const tinygltf::Model& model, const JsonObject& root, RenderScene& scene, Remarks& remarks)
-        : model_(model),
-          materials_(root.objects("materials")),
-          meshes_(root.objects("meshes")),
-          scene_(scene),
-          remarks_(remarks) {}
+        : model_(model), materials_(root.objects("materials")), scene_(scene), remarks_(remarks) {
+        for (const JsonObject& mesh : root.objects("meshes")) primitives_.push_back(mesh.objects("primitives"));
+    }
 
     void read_materials(TextureReader& textures) {
         for (const JsonObject& material : materials_)
@@ -47,7 +48,7 @@ public:
     const Look& of(int mesh_id, std::size_t primitive_id) {
         const auto found = known_.find({mesh_id, primitive_id});
         if (found != known_.end()) return found->second;
-        const JsonObject primitive = meshes_[std::size_t(mesh_id)].objects("primitives")[primitive_id];
+        const JsonObject& primitive = primitives_[std::size_t(mesh_id)][primitive_id];
         return known_[{mesh_id, primitive_id}] = naming_primitive(mesh_id, primitive_id, [&] { return read(primitive); });
     }
 
@@ -94,7 +95,8 @@ private:
     }
 
     const tinygltf::Model& model_;
-    std::vector<JsonObject> materials_, meshes_;
+    std::vector<JsonObject> materials_;
+    std::vector<std::vector<JsonObject>> primitives_;  // by mesh
     RenderScene& scene_;
     Remarks& remarks_;
     std::map<std::pair<int, std::size_t>, Look> known_;

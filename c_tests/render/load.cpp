@@ -15,6 +15,11 @@ using harness::SceneError;
 
 constexpr float overcast_nt = 1000;
 
+const struct {
+    std::string spec;
+    RenderScene (*make)();
+} lit_generators[] = {{"gen:cornell", make_cornell}, {"gen:furnace", make_furnace}};
+
 RenderScene grey_scene(harness::Scene geometry) {
     RenderScene scene;
     scene.name = geometry.name;
@@ -36,8 +41,10 @@ RenderScene load_gltf(const std::string& path, std::vector<std::string>& remarks
 }
 
 RenderScene load_any(const std::string& spec, std::vector<std::string>& remarks) {
-    if (spec == "gen:cornell") return make_cornell();
-    if (spec == "gen:furnace") return make_furnace();
+    for (const auto& [name, make] : lit_generators) {
+        if (spec == name) return make();
+        if (spec.starts_with(name + ":")) throw SceneError(spec + ": of " + name + " there is one size only");
+    }
     if (spec.ends_with(".glb") || spec.ends_with(".gltf")) return load_gltf(spec, remarks);
     return grey_scene(harness::load_scene(spec));
 }
