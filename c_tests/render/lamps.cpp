@@ -29,16 +29,16 @@ template <typename Attenuation>
 std::optional<LampSample> from_position(const Vec3f& position, const Rgb& intensity_cd, float range_m, const Vec3f& point,
                                         Attenuation attenuation) {
     const Vec3d way = to_double(position) - to_double(point);
-    const double distance = length(way);
+    const double distance_squared = dot(way, way), distance = std::sqrt(distance_squared);
     if (!(distance > 0)) return {};
     const Vec3d direction = (1 / distance) * way;
     const double share = attenuation(-direction) * gnomon_range_attenuation(distance, range_m);
     if (!(share > 0)) return {};
-    return LampSample{direction, static_cast<float>(share / (distance * distance)) * intensity_cd, infinity, position};
+    return LampSample{direction, static_cast<float>(share / distance_squared) * intensity_cd, infinity, position};
 }
 
 double spot_attenuation(const SpotLight& light, const Vec3d& direction) {
-    const double cosine = dot(direction, normalized(to_double(light.direction)));
+    const double cosine = dot(direction, to_double(light.direction));
     return gnomon_spot_attenuation(std::acos(std::clamp(cosine, -1.0, 1.0)), light.inner_cone_rad, light.outer_cone_rad);
 }
 
@@ -142,7 +142,7 @@ std::optional<LampSample> Lamps::sizeless(std::size_t index, const Vec3f& point)
                              [&](const Vec3d& direction) { return spot_attenuation(light, direction); });
     }
     const DirectionalLight& light = scene_.directional_lights[lamp.index];
-    return LampSample{-normalized(to_double(light.direction)), light.illuminance_lx, infinity, {}};
+    return LampSample{-to_double(light.direction), light.illuminance_lx, infinity, {}};
 }
 
 double Lamps::density_per_sr(const Vec3f& point, std::uint32_t geometry_id, std::uint32_t primitive_id) const {

@@ -28,8 +28,9 @@ Rgb base_color_at(const RenderScene& scene, const Surface& surface, const Materi
 }  // namespace
 
 int side_of(const Vec3d& direction, const Vec3d& normal) {
-    const double along = dot(direction, normal), doubt = 0x1p-24 * length(direction);
-    return along > doubt ? 1 : along < -doubt ? -1 : 0;
+    const double along = dot(direction, normal);
+    if (!(along * along > 0x1p-48 * dot(direction, direction))) return 0;
+    return along > 0 ? 1 : -1;
 }
 
 std::optional<SurfaceHit> surface_hit(const RenderScene& scene, const GnomonScene* handle, const GnomonRay& ray,
