@@ -7,8 +7,11 @@ export PATH := $(PATH):$(HOME)/.cargo/bin
 BUILD ?= build
 JOBS ?= $(shell nproc)
 
+# Of Debian's assimp-testmodels, which every machine can have.
+engine = /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb
+
 # Those that README.md shows, as far as the machine has them; the engine is one of those in ../shared/scenes.
-scenes = $(or $(wildcard ../shared/scenes/*.glb),/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb) \
+scenes = $(or $(wildcard ../shared/scenes/*.glb),$(engine)) \
          gen:terrain gen:interior gen:hair
 
 # Debian's own, for which its packages are.
@@ -17,7 +20,7 @@ python = $(or $(wildcard /usr/bin/python3),python3)
 ctest = ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
 .DEFAULT_GOAL := help
-.PHONY: help build compare bench structures report test test-slow hard check test-rust test-c test-sanitized format clean packages packages-report packages-test cargo
+.PHONY: help build compare bench structures report render test test-slow hard check test-rust test-c test-sanitized format clean packages packages-report packages-test cargo
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -69,6 +72,13 @@ report: packages-report build ## Speed against error of every structure and prec
 	    --html $(OUT)/index.html --svg $(OUT)/speed-against-error.svg || status=$$?; \
 	[ $$status -gt 1 ] || echo "results: $(OUT)/index.html and $(OUT)/speed-against-error.svg"; \
 	exit $$status
+
+render: OUT ?= $(BUILD)/render
+render: SCENE ?= $(engine)
+render: packages cargo ## Render pictures in nits; SCENE="file.glb gen:cornell ..." OUT=dir ARGS="options of gnomon-render"
+	cmake -S . -B $(BUILD)
+	cmake --build $(BUILD) --parallel $(JOBS) --target gnomon-render
+	@for scene in $(SCENE); do $(BUILD)/bin/gnomon-render --out $(OUT)/ $(ARGS) "$$scene" || exit; done
 
 test: packages-test cargo check test-rust test-sanitized test-c ## Check the style and run all but the slow tests
 

@@ -22,9 +22,9 @@ Camera fitted(Camera camera, int width, int height) {
     return camera;
 }
 
-Camera default_camera(const RenderScene& scene) {
+Camera default_camera(const RenderScene& scene, const std::string& spec) {
     constexpr double margin = 1.06;
-    harness::Scene geometry{scene.name, {}};
+    harness::Scene geometry{spec, {}};
     for (const Surface& surface : scene.surfaces) geometry.meshes.push_back(surface.mesh);
     const harness::Camera view = harness::outside_camera(geometry);
     const double half_height = margin * std::max(view.half_height, view.half_width / usual_aspect);

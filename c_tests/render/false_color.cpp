@@ -36,7 +36,7 @@ int preferred_index_below(double x) {
     return index;
 }
 
-/// The sum's place in [0, 1] on the logarithmic scale.
+/// Its place in [0, 1] on the logarithmic scale.
 double place(double luminance_nt, const LuminanceRange& range) {
     return std::log(luminance_nt / range.lower_nt) / std::log(range.upper_nt / range.lower_nt);
 }
@@ -115,7 +115,7 @@ Srgb false_color(double luminance_nt, const LuminanceRange& range) {
 
 Picture false_colored(const Image& image) {
     const LuminanceRange range = luminance_range(image);
-    const int unit = std::max(1, image.height / 300), margin = text_height * unit;
+    const int unit = std::max(1, image.height / 250), margin = text_height * unit;
     Picture picture{image.width + Legend::width * unit, image.height, {}};
     picture.pixels.assign(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), paper);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {

@@ -59,7 +59,7 @@ RenderScene load_render_scene(const std::string& spec, std::vector<std::string>&
         remarks.push_back(spec + ": no light: under a sky of 1000 nt");
     }
     if (scene.cameras.empty()) {
-        scene.cameras.push_back(default_camera(scene));
+        scene.cameras.push_back(default_camera(scene, spec));
         remarks.push_back(spec + ": no camera: seen from outside");
     }
     return scene;

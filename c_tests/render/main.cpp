@@ -46,7 +46,8 @@ Rendering render_in_time(const RenderScene& scene, const Camera& camera, const O
 
 /// Where the files go, without extensions; the folder is made.
 std::string out_path(const Options& options, const RenderScene& scene) {
-    const std::filesystem::path path = options.out.empty() ? "build/render/" + scene.name : options.out;
+    std::filesystem::path path = options.out;
+    if (!path.has_filename() || std::filesystem::is_directory(path)) path /= scene.name;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
     return path.string();
 }

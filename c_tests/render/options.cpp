@@ -20,10 +20,9 @@ const std::map<std::string, Method> method_names = {{"path", Method::path}, {"wh
 void declare(CLI::App& app, Options& options) {
     RenderOptions& render = options.render;
     app.add_option("SCENE", options.scene, "a .glb or .gltf file, gen:cornell, gen:furnace, or gen:NAME[:TRIANGLES]")->required();
-    app.add_option(
-        "--out", options.out,
-        "files to write, without the extensions: .png, .exr in nt, and _false_color.png (build/render/ and the scene's "
-        "name)");
+    app.add_option("--out", options.out,
+                   "files to write, without their extensions, or a folder: .png, .exr in nt, and _false_color.png")
+        ->capture_default_str();
     app.add_option("--width", render.width, "pixels; the height follows from the camera (within 960 x 540)")
         ->check(CLI::Range(1, most_pixels_a_side));
     app.add_option("--height", render.height, "pixels; the width follows from the camera")

@@ -10,9 +10,9 @@ namespace render {
 
 struct Options {
     std::string scene;
-    std::string out;             // without an extension; empty: named after the scene
-    std::string camera;          // a name or an index; empty: the first
-    RenderOptions render{0, 0};  // width and height 0: the camera's shape, within 960 x 540
+    std::string out = "build/render/";  // without extensions; of a folder: named after the scene in it
+    std::string camera;                 // a name or an index; empty: the first
+    RenderOptions render{0, 0};         // width and height 0: the camera's shape, within 960 x 540
     std::optional<float> environment_nt;
     std::optional<double> exposure_ev100;
     bool false_color = false;

@@ -35,8 +35,8 @@ double automatic_exposure(const Image& image) {
 
 Picture tone_mapped(const Image& image, double exposure_ev100) {
     const double scale = middle_grey / mean_of_exposure(exposure_ev100);
-    // Never below 1: a dim picture under a given exposure stays dim.
-    const double white = std::max(1.0, scale * brightest(image));
+    // Not below what the meter takes for the mean: a picture that a given exposure leaves dim stays dim.
+    const double white = std::max(middle_grey, scale * brightest(image));
     Picture picture{image.width, image.height, {}};
     picture.pixels.reserve(image.pixels.size());
     for (const Rgb& pixel : image.pixels) {

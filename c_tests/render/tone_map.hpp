@@ -13,7 +13,8 @@ double exposure_of(double mean_nt);
 double automatic_exposure(const Image& image);
 
 /// The photographic operator of Reinhard, Stark, Shirley and Ferwerda 2002 on luminance, colours kept: what the meter takes for
-/// the mean becomes middle grey, and the brightest pixels white. A channel beyond the screen's is clamped.
+/// the mean becomes middle grey, and the brightest pixels white, unless they are below that mean. A channel beyond the screen's
+/// is clamped.
 Picture tone_mapped(const Image& image, double exposure_ev100);
 
 }  // namespace render
