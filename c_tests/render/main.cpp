@@ -5,11 +5,14 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "harness/progress.hpp"
+#include "harness/write_file.hpp"
 #include "render/camera.hpp"
 #include "render/exr.hpp"
 #include "render/false_color.hpp"
+#include "render/furnace.hpp"
 #include "render/load.hpp"
 #include "render/options.hpp"
 #include "render/tone_map.hpp"
@@ -31,17 +34,14 @@ void stop_at_interrupt() {
     });
 }
 
-Rendering render_in_time(const RenderScene& scene, const Camera& camera, const Options& options) {
-    const RenderOptions& size = options.render;
-    harness::Progress progress(std::uint64_t(size.width) * std::uint64_t(size.height) * std::uint64_t(size.sample_count),
-                               scene.name);
-    const Clock::time_point start = Clock::now();
-    const std::chrono::duration<double> limit(options.time_limit_s);
-    const auto advance = [&](std::uint64_t samples) {
-        progress.advance(samples);
-        if (options.time_limit_s > 0 && Clock::now() - start > limit) stop = true;
+std::uint64_t pixel_count(const RenderOptions& options) { return std::uint64_t(options.width) * std::uint64_t(options.height); }
+
+/// Counts samples as done, and sets `stop` when the time is up.
+RenderProgress in_time(harness::Progress& progress, double time_limit_s) {
+    return [&progress, time_limit_s, start = Clock::now()](std::uint64_t sample_count) {
+        progress.advance(sample_count);
+        if (time_limit_s > 0 && std::chrono::duration<double>(Clock::now() - start).count() > time_limit_s) stop = true;
     };
-    return render::render(scene, camera, options.render, advance, stop);
 }
 
 /// Where the files go, without extensions; the folder is made.
@@ -62,21 +62,39 @@ void write_pictures(const Image& image, const Options& options, const std::strin
     std::printf("wrote %s_false_color.png\n", path.c_str());
 }
 
+void write_furnace(const RenderScene& scene, const Camera& camera, const Options& options) {
+    constexpr std::uint64_t method_count = 2;
+    harness::Progress progress(method_count * pixel_count(options.render), scene.name);
+    const auto json = furnace_json(scene, camera, options.render, in_time(progress, options.time_limit_s), stop);
+    harness::write_file(options.furnace_path, json.dump(2) + "\n");
+    std::printf("wrote %s\n", options.furnace_path.c_str());
+}
+
+/// The bar is gone when it returns.
+Rendering render_visibly(const RenderScene& scene, const Camera& camera, const Options& options) {
+    harness::Progress progress(pixel_count(options.render) * std::uint64_t(options.render.sample_count), scene.name);
+    return render::render(scene, camera, options.render, in_time(progress, options.time_limit_s), stop);
+}
+
+void write_rendering(const RenderScene& scene, const Camera& camera, const Options& options) {
+    const std::string path = out_path(options, scene);  // before the work, which a bad path would waste
+    const Rendering rendering = render_visibly(scene, camera, options);
+    std::printf("%s: %d x %d, %.1f samples a pixel%s, in %.1f s (build %.2f s): %.2f Mray/s; mean luminance %.4g nt\n",
+                scene.name.c_str(), rendering.image.width, rendering.image.height, rendering.samples_per_pixel,
+                rendering.is_complete ? "" : " (stopped)", rendering.seconds, rendering.build_seconds,
+                double(rendering.ray_count) / rendering.seconds / 1e6, mean_luminance(rendering.image));
+    write_pictures(rendering.image, options, path);
+}
+
 void run(Options options) {
     std::vector<std::string> remarks;
     const RenderScene scene = load_render_scene(options.scene, remarks, options.environment_nt);
     for (const std::string& remark : remarks) std::fprintf(stderr, "gnomon-render: %s\n", remark.c_str());
     const Camera& camera = find_camera(scene, options.camera);
     choose_size(options.render, camera);
-    const std::string path = out_path(options, scene);  // before the work, which a bad path would waste
-
+    const Camera view = fitted(camera, options.render.width, options.render.height);
     stop_at_interrupt();
-    const Rendering rendering = render_in_time(scene, fitted(camera, options.render.width, options.render.height), options);
-    std::printf("%s: %d x %d, %.1f samples a pixel%s, in %.1f s (build %.2f s): %.2f Mray/s; mean luminance %.4g nt\n",
-                scene.name.c_str(), rendering.image.width, rendering.image.height, rendering.samples_per_pixel,
-                rendering.is_complete ? "" : " (stopped)", rendering.seconds, rendering.build_seconds,
-                double(rendering.ray_count) / rendering.seconds / 1e6, mean_luminance(rendering.image));
-    write_pictures(rendering.image, options, path);
+    options.furnace_path.empty() ? write_rendering(scene, view, options) : write_furnace(scene, view, options);
 }
 
 }  // namespace

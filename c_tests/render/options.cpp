@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <limits>
 #include <map>
 
 #include "render/camera.hpp"
@@ -16,6 +18,11 @@ namespace {
 constexpr int most_pixels_a_side = 16'384;
 
 const std::map<std::string, Method> method_names = {{"path", Method::path}, {"whitted", Method::whitted}};
+
+/// CLI11's ranges let it through.
+std::string no_nan(const std::string& text) {
+    return std::isnan(std::strtod(text.c_str(), nullptr)) ? "\"" + text + "\" is no number" : "";
+}
 
 void declare(CLI::App& app, Options& options) {
     RenderOptions& render = options.render;
@@ -33,10 +40,15 @@ void declare(CLI::App& app, Options& options) {
         ->default_str("path");
     app.add_option("--camera", options.camera, "its name, or its index in the order of the scene's nodes (0)");
     app.add_option("--environment", options.environment_nt, "luminance of the sky in nt, instead of the scene's")
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0.0F, std::numeric_limits<float>::max()))
+        ->check(no_nan);
     app.add_option("--exposure", options.exposure_ev100, "of the .png, as EV at ISO 100 (by the mean luminance)")
-        ->check(CLI::Range(-40.0, 60.0));
+        ->check(CLI::Range(-40.0, 60.0))
+        ->check(no_nan);
     app.add_flag("--false-color", options.false_color, "also writes luminance as colour, with a scale in nt");
+    app.add_option(
+        "--furnace", options.furnace_path,
+        "instead of pictures, writes as JSON what each method makes of each kind of surface: of gen:furnace all is 1 nt");
     app.add_option("--max-depth", render.max_depth, "bounces of light: 1 is direct light, 0 no limit")
         ->check(CLI::Range(0, 1 << 20))
         ->capture_default_str();

@@ -16,7 +16,8 @@ struct Options {
     std::optional<float> environment_nt;
     std::optional<double> exposure_ev100;
     bool false_color = false;
-    double time_limit_s = 0;  // 0: none
+    std::string furnace_path;  // where not empty, no pictures
+    double time_limit_s = 0;   // 0: none
 };
 
 /// Empty where the program has no more to do: after --help, or after one line about what is wrong. `status` is then its exit

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <string>
 
+#include "harness/mean.hpp"
 #include "render/camera_ray.hpp"
 #include "render/standin.hpp"
-#include "suites/mean.hpp"
 #include "suites/render_parts.hpp"
 
 using namespace harness;

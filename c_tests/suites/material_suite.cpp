@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <numbers>
 
+#include "harness/mean.hpp"
 #include "rays/vector.hpp"
 #include "render/material.hpp"
-#include "suites/mean.hpp"
 
 using namespace harness;
 using render::Material;

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <string>
 
+#include "harness/mean.hpp"
 #include "rays/vector.hpp"
 #include "render/camera_ray.hpp"
 #include "render/render.hpp"
@@ -17,7 +18,6 @@
 #include "render/triangle.hpp"
 #include "scene/load.hpp"
 #include "scene/mesh_parts.hpp"
-#include "suites/mean.hpp"
 #include "suites/render_parts.hpp"
 
 using namespace harness;
