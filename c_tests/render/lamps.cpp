@@ -7,7 +7,6 @@
 
 #include "render/image.hpp"
 #include "render/rgb.hpp"
-#include "render/standin.hpp"
 #include "render/triangle.hpp"
 
 namespace render {
@@ -68,14 +67,14 @@ void Lamps::add_triangles(const RenderScene& scene) {
     first_of_surface_.assign(scene.surfaces.size(), std::numeric_limits<std::size_t>::max());
     for (std::size_t surface = 0; surface < scene.surfaces.size(); ++surface) {
         const Material& material = scene.materials[scene.surfaces[surface].material_id];
-        const double exitance_lx = gnomon_lambertian_exitance_lx(luminance(material.emission_nt));
-        if (!(exitance_lx > 0)) continue;
+        const double exitance_lm_per_m2 = gnomon_lambertian_exitance_lm_per_m2(luminance(material.emission_nt));
+        if (!(exitance_lm_per_m2 > 0)) continue;
         first_of_surface_[surface] = lamps_.size();
         const Mesh& mesh = scene.surfaces[surface].mesh;
         for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
             const auto [a, b, c] = triangle_of(mesh, i);
             const double area = 0.5 * length(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
-            add(Kind::triangle, surface, i, (material.is_double_sided ? 2 : 1) * area * exitance_lx);
+            add(Kind::triangle, surface, i, (material.is_double_sided ? 2 : 1) * area * exitance_lm_per_m2);
         }
     }
 }

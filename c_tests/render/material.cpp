@@ -6,7 +6,6 @@
 
 #include "gnomon.h"
 #include "rays/vector.hpp"
-#include "render/standin.hpp"
 
 namespace render {
 

@@ -4,9 +4,13 @@
 #include <atomic>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "rays/vector.hpp"
+#include "render/camera_ray.hpp"
+#include "render/lamp_rays.hpp"
 #include "render/render.hpp"
+#include "render/traced_scene.hpp"
 #include "scene/mesh_parts.hpp"
 
 namespace harness {
@@ -64,6 +68,22 @@ inline render::Rendering picture_of(const render::RenderScene& scene, const rend
                                     const render::RenderOptions& options) {
     const std::atomic<bool> stop{false};
     return render::render(scene, camera, options, {}, stop);
+}
+
+/// What the rays through the centres of pixels hit, which are those of a picture of one sample.
+struct Sight {
+    std::vector<GnomonRay> rays;
+    std::vector<GnomonHit> hits;
+};
+
+inline Sight sight_of(const render::RenderScene& scene, const render::Camera& camera, const render::RenderOptions& options) {
+    const render::TracedScene traced(scene, options.precision, 1);
+    Sight sight;
+    for (int y = 0; y < options.height; ++y)
+        for (int x = 0; x < options.width; ++x)
+            sight.rays.push_back(camera_ray(camera, (x + 0.5) / options.width, (y + 0.5) / options.height));
+    render::intersect_all(traced.handle.get(), sight.rays, sight.hits);
+    return sight;
 }
 
 }  // namespace harness

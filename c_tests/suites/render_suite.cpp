@@ -29,24 +29,6 @@ using render::Rgb;
 
 namespace {
 
-/// What the rays through the centres of pixels hit, which are those of a picture of one sample.
-struct Sight {
-    std::vector<GnomonRay> rays;
-    std::vector<GnomonHit> hits;
-};
-
-Sight sight_of(const RenderScene& scene, const render::Camera& camera, const RenderOptions& options) {
-    const render::TracedScene traced(scene, options.precision, 1);
-    Sight sight;
-    for (int y = 0; y < options.height; ++y)
-        for (int x = 0; x < options.width; ++x)
-            sight.rays.push_back(camera_ray(camera, (x + 0.5) / options.width, (y + 0.5) / options.height));
-    sight.hits.resize(sight.rays.size());
-    REQUIRE(gnomon_intersect_n(traced.handle.get(), sight.rays.data(), sight.rays.size(), sight.hits.data(), nullptr) ==
-            GNOMON_OK);
-    return sight;
-}
-
 /// Nothing absorbs, and light of 1 nt comes from everywhere: so all there is has 1 nt (Planck's furnace).
 RenderScene furnace() {
     RenderScene scene;
