@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "harness/triangles.hpp"
 #include "render/camera_ray.hpp"
@@ -123,9 +124,12 @@ GnomonIrradiance floor_irradiance(const Mesh& lamp, float luminance_nt, const Gn
     GnomonSources sources{};
     sources.struct_size = sizeof sources;
     sources.areas = &source, sources.area_count = 1;
+    GnomonIrradianceOptions options;
+    gnomon_irradiance_options_init(&options);
+    options.thread_count = 1, options.sample_count = 64;
     const float normal[3] = {0, 0, 1};
     GnomonIrradiance irradiance;
-    REQUIRE_MESSAGE(gnomon_irradiance(blockers, &sources, to_float(point).data(), normal, nullptr, &irradiance) == GNOMON_OK,
+    REQUIRE_MESSAGE(gnomon_irradiance(blockers, &sources, to_float(point).data(), normal, &options, &irradiance) == GNOMON_OK,
                     gnomon_last_error());
     return irradiance;
 }
@@ -153,24 +157,29 @@ TEST_CASE("area_lamp_over_a_plane_is_what_gnomon_irradiance_says") {
         RenderScene scene = floor_scene();
         add_surface(scene, lamp, add_material(scene, MaterialKind::diffuse, 0, luminance_nt));
         if (has_blocker) add_surface(scene, ball({0.4, 0.3, 0.9}, 0.3), add_material(scene, MaterialKind::diffuse, 0));
+        const RenderOptions view{.width = 100, .height = 100, .sample_count = 1, .max_depth = 1};
+        const Sight sight = sight_of(scene, camera, view);
         const render::TracedScene traced(scene, GNOMON_PRECISION_ACCURATE, 1);
         const Vec3d above_floor = {0, 0, 0x1p-30};  // so that the floor is not in its own way
+        std::vector<std::size_t> floor_pixels;
+        std::vector<double> expected;
+        Mean all;
+        double variance = 0;  // of the sum of what is expected
+        for (std::size_t pixel = 0; pixel < sight.hits.size(); ++pixel) {
+            if (sight.hits[pixel].geometry_id != 0) continue;
+            const auto irradiance = floor_irradiance(lamp, luminance_nt, has_blocker ? traced.handle.get() : nullptr,
+                                                     floor_point(view, pixel) + above_floor);
+            floor_pixels.push_back(pixel);
+            expected.push_back(irradiance.illuminance_lx * reflectance / std::numbers::pi);
+            all.add(expected.back());
+            variance += std::pow(irradiance.standard_error_lx * reflectance / std::numbers::pi, 2);
+        }
         for (const Way& way : ways) {
-            const RenderOptions options{
-                .width = 100, .height = 100, .sample_count = 1, .max_depth = 1, .method = way.method, .strategy = way.strategy};
+            RenderOptions options = view;
+            options.method = way.method, options.strategy = way.strategy;
             const auto pixels = picture_of(scene, camera, options).image.pixels;
-            const Sight sight = sight_of(scene, camera, options);
-            Mean difference, all;
-            double variance = 0;  // of the sum of what was estimated on the other side
-            for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel) {
-                if (sight.hits[pixel].geometry_id != 0) continue;
-                const auto irradiance = floor_irradiance(lamp, luminance_nt, has_blocker ? traced.handle.get() : nullptr,
-                                                         floor_point(options, pixel) + above_floor);
-                const double to_radiance = reflectance / std::numbers::pi;
-                difference.add(pixels[pixel][0] - to_radiance * irradiance.illuminance_lx);
-                all.add(to_radiance * irradiance.illuminance_lx);
-                variance += std::pow(to_radiance * irradiance.standard_error_lx, 2);
-            }
+            Mean difference;
+            for (std::size_t i = 0; i < expected.size(); ++i) difference.add(pixels[floor_pixels[i]][0] - expected[i]);
             const double standard_error =
                 std::hypot(difference.standard_error(), std::sqrt(variance) / static_cast<double>(difference.count));
             std::printf("area lamp%s, %-8s %.6f nt, off by %.6f +- %.6f\n", has_blocker ? " behind a ball" : "", way.name,
