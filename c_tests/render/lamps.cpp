@@ -37,7 +37,7 @@ std::optional<LampSample> from_position(const Vec3f& position, const Rgb& intens
 }
 
 double spot_attenuation(const SpotLight& light, const Vec3d& direction) {
-    const double cosine = dot(direction, to_double(light.direction));
+    const double cosine = dot(direction, normalized(to_double(light.direction)));
     return gnomon_spot_attenuation(std::acos(std::clamp(cosine, -1.0, 1.0)), light.inner_cone_rad, light.outer_cone_rad);
 }
 
@@ -141,7 +141,7 @@ std::optional<LampSample> Lamps::sizeless(std::size_t index, const Vec3f& point)
                              [&](const Vec3d& direction) { return spot_attenuation(light, direction); });
     }
     const DirectionalLight& light = scene_.directional_lights[lamp.index];
-    return LampSample{-to_double(light.direction), light.illuminance_lx, infinity, {}};
+    return LampSample{-normalized(to_double(light.direction)), light.illuminance_lx, infinity, {}};
 }
 
 double Lamps::density_per_sr(const Vec3f& point, std::uint32_t geometry_id, std::uint32_t primitive_id) const {
