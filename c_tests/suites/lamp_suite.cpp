@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "harness/mean.hpp"
 #include "harness/triangles.hpp"
 #include "render/camera_ray.hpp"
 #include "render/traced_scene.hpp"
-#include "harness/mean.hpp"
 #include "suites/render_parts.hpp"
 
 using namespace harness;
@@ -77,6 +77,7 @@ void check_floor(const RenderScene& scene, double least_distance, double slope, 
 TEST_CASE("point_lamp_over_a_plane_is_intensity_cosine_over_square_of_the_distance") {
     RenderScene scene = floor_scene();
     const Vec3f lamp = {0.5F, 0.25F, 2};
+    add_surface(scene, ball({0.5, 0.25, 2.6}, 0.3), add_material(scene, MaterialKind::diffuse, 0));  // behind it: hides nothing
     for (const float range : {infinity, 3.0F}) {
         scene.point_lights = {{lamp, grey(70), range}};
         // 1 - (d / range)^4 has a slope of 4 / range at the end.

@@ -14,6 +14,7 @@
 #include "rays/vector.hpp"
 #include "render/camera_ray.hpp"
 #include "render/render.hpp"
+#include "render/surface_hit.hpp"
 #include "render/traced_scene.hpp"
 #include "render/triangle.hpp"
 #include "scene/load.hpp"
@@ -98,6 +99,17 @@ TEST_CASE("furnace_by_whitted_loses_what_diffuse_surfaces_get_from_all_around") 
         CHECK(means[kind].mean > 0);
         CHECK(means[kind].mean < 1);
     }
+}
+
+TEST_CASE("direction_along_a_surface_leads_to_no_side") {
+    const Vec3d normal = {0, 0, 1};
+    for (const double scale : {1e-30, 1.0, 1e30}) {
+        CHECK(render::side_of(scale * Vec3d{1, 0, 0x1p-23}, normal) == 1);
+        CHECK(render::side_of(scale * Vec3d{1, 0, -0x1p-23}, normal) == -1);
+        CHECK(render::side_of(scale * Vec3d{1, 0, 0x1p-25}, normal) == 0);
+        CHECK(render::side_of(scale * Vec3d{1, 0, -0x1p-25}, normal) == 0);
+    }
+    CHECK(render::side_of({0, 0, std::nan("")}, normal) == 0);
 }
 
 TEST_CASE("closed_box_is_black_inside_whatever_shines_outside") {
