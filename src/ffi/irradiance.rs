@@ -145,7 +145,8 @@ assert_same_layout! {
 /// hidden, or not, with 95 % confidence. The same seed gives the same answer, on any number of threads.
 ///
 /// What touches the point, or lies within 2^-22 of the distance from the source, is not in the way: sources may be part of the scene. In
-/// FAST that is 2^-12, and a few rays in 100,000 to a triangle of the scene still hit it. A triangle that is seen end on sends nothing.
+/// FAST that is 2^-12 for area sources, and a few rays in 100,000 to a triangle of the scene still hit it. A triangle that is seen end
+/// on sends nothing.
 /// For a point on a surface take the origin that `gnomon_offset_origin` gives for the normal, so that the surface is not in its own way.
 ///
 /// Errors: `GNOMON_ERROR_INVALID_ARGUMENT` for a null pointer, a normal of length 0, whatever is not finite, negative values, cones and ranges

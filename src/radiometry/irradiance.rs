@@ -46,8 +46,8 @@ pub struct IrradianceEstimate {
 /// arrives, and how far that is off. Where all of these arrive, the answer is the closed form, where none does 0, both without
 /// an error: of `N` rays less than `3 / N` may be hidden, or not, with 95 % confidence.
 ///
-/// What lies within `gamma(3)` of the distance from a source, in FAST 2^-12, or touches the point, is not in the way: a source may be part
-/// of the scene.
+/// What lies within `gamma(3)` of the distance from a source, of one of triangles within 2^-12 in FAST, or touches the point, is not in
+/// the way: a source may be part of the scene.
 pub fn irradiance(
     scene: Option<&Scene>,
     sources: &Sources,
@@ -62,6 +62,14 @@ pub fn irradiance(
     let (from_patches, standard_error) = view.from_patches(&patches)?;
     Ok(IrradianceEstimate { illuminance: from_lamps + from_patches, standard_error, ray_count: view.ray_count })
 }
+
+/// Of the way to a source: the direction is off by a rounding, the end by another, and a hit's t by one; what is no nearer than that counts as
+/// the source.
+const LEFT_OUT: f64 = gamma(3) as f64;
+
+/// The same for triangles in FAST, whose t is off by more, the more the flatter a ray meets them: at [`LEFT_OUT`] a tenth of the rays to a
+/// sphere of triangles hit it before their end, here one in 20,000.
+const FAST_LEFT_OUT: f64 = 1.0 / 4096.0;
 
 struct View<'a> {
     scene: Option<&'a Scene>,
@@ -98,7 +106,7 @@ impl View<'_> {
         };
         let Some(scene) = self.scene else { return Ok(direct.illuminance) };
         self.ray_count += 1;
-        let is_hidden = scene.occluded(&self.shadow_ray(scene, direct.to_source, direct.distance));
+        let is_hidden = scene.occluded(&self.shadow_ray(direct.to_source, direct.distance, LEFT_OUT));
         Ok(if is_hidden { Illuminance::new(0.0) } else { direct.illuminance })
     }
 
@@ -124,6 +132,7 @@ impl View<'_> {
         /// 2^64 over the golden ratio: keeps the seeds of neighbouring streams far apart.
         const GOLDEN_RATIO: u64 = 0x9E37_79B9_7F4A_7C15;
 
+        let triangle_left_out = if scene.precision() == Precision::Fast { FAST_LEFT_OUT } else { LEFT_OUT };
         let sample_count = self.options.sample_count;
         let chunk_count = usize::try_from(sample_count.div_ceil(CHUNK)).unwrap_or(usize::MAX);
         let mut chunks = Vec::new();
@@ -141,7 +150,8 @@ impl View<'_> {
                 let count = CHUNK.min(sample_count - CHUNK * index as u64);
                 for _ in 0..count {
                     let sample = patches.sample([(); 3].map(|()| uniform(&mut rng)));
-                    let ray = self.shadow_ray(scene, sample.to_source, sample.distance);
+                    let left_out = if sample.is_of_triangle { triangle_left_out } else { LEFT_OUT };
+                    let ray = self.shadow_ray(sample.to_source, sample.distance, left_out);
                     // A way from below the horizon needs no ray.
                     chunk.add(sample.weight, sample.weight > 0.0 && !scene.occluded(&ray));
                 }
@@ -152,13 +162,8 @@ impl View<'_> {
         Ok(estimate)
     }
 
-    /// From the receiver up to `distance` lengths of `to_source`, both ends left out.
-    ///
-    /// The direction is off by a rounding, the end by another, and a hit's t by one: what is no nearer than that counts as the source. The
-    /// t of FAST is off by more, the more the flatter a ray meets a triangle: at `gamma(3)` a tenth of the rays to a sphere of triangles
-    /// hit it before their end, at 2^-12 one in 20,000.
-    fn shadow_ray(&self, scene: &Scene, to_source: DVec3, distance: f64) -> Ray {
-        let left_out = if scene.precision() == Precision::Fast { 1.0 / 4096.0 } else { f64::from(gamma(3)) };
+    /// From the receiver up to `distance` lengths of `to_source` but for a share of it, both ends left out.
+    fn shadow_ray(&self, to_source: DVec3, distance: f64, left_out: f64) -> Ray {
         Ray {
             origin: self.receiver.point.as_vec3(),
             t_min: f32::MIN_POSITIVE,

@@ -39,6 +39,8 @@ pub(super) struct PatchSample {
     pub(super) distance: f64,
     /// Its mean over all samples is the total [lx].
     pub(super) weight: f64,
+    /// Not of a sphere.
+    pub(super) is_of_triangle: bool,
 }
 
 impl Patches {
@@ -130,6 +132,7 @@ impl Patches {
             to_source: sample.direction,
             distance: patch.shape.distance(sample.direction.as_vec3().as_dvec3()),
             weight: sent / patch.illuminance_lx * self.total,
+            is_of_triangle: matches!(patch.shape, Shape::Triangle(_)),
         }
     }
 }
