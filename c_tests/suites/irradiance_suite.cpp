@@ -178,7 +178,7 @@ TEST_CASE("screens_leave_the_closed_form_within_an_honest_error_that_falls_with_
                 const GnomonIrradiance answer = irradiance_at(place, scene.get(), sample_count, seed);
                 const double off = off_by(answer, place.visible_lx);
                 CAPTURE(seed);
-                CHECK(std::abs(off) <= 4);
+                CHECK(std::abs(off) <= 5);  // of so many estimates one is beyond 4 every fifth time, and beyond 5 every 500th
                 beyond += std::abs(off) > 2;
                 most = std::max(most, std::abs(off));
                 squares += std::pow((answer.illuminance_lx - place.visible_lx) / place.whole_lx, 2);
