@@ -119,15 +119,17 @@ double illuminance_below_square(double half_side, double height) {
     return 0.5 * 4 * angle * half_side / slant;
 }
 
-/// What gnomon_irradiance says of the floor below a lamp, in lx; `blockers` may be null.
-GnomonIrradiance floor_irradiance(const Mesh& lamp, float luminance_nt, const GnomonScene* blockers, const Vec3d& point) {
+/// What gnomon_irradiance says of the floor below a lamp, in lx; `blockers` may be null. With one seed for all places they would
+/// be off together.
+GnomonIrradiance floor_irradiance(const Mesh& lamp, float luminance_nt, const GnomonScene* blockers, const Vec3d& point,
+                                  std::uint64_t seed) {
     const GnomonAreaSource source = {triangles_of(lamp), luminance_nt, 0};
     GnomonSources sources{};
     sources.struct_size = sizeof sources;
     sources.areas = &source, sources.area_count = 1;
     GnomonIrradianceOptions options;
     gnomon_irradiance_options_init(&options);
-    options.thread_count = 1, options.sample_count = 64;
+    options.thread_count = 1, options.sample_count = 64, options.seed = seed;
     const float normal[3] = {0, 0, 1};
     GnomonIrradiance irradiance;
     REQUIRE_MESSAGE(gnomon_irradiance(blockers, &sources, to_float(point).data(), normal, &options, &irradiance) == GNOMON_OK,
@@ -151,7 +153,7 @@ TEST_CASE("area_lamp_over_a_plane_is_what_gnomon_irradiance_says") {
     constexpr double half_side = 0.7, height = 1.5;
     constexpr float luminance_nt = 20;
     const Mesh lamp = square(half_side, {0, 0, height}, true);
-    CHECK(floor_irradiance(lamp, luminance_nt, nullptr, {0, 0, 0}).illuminance_lx ==
+    CHECK(floor_irradiance(lamp, luminance_nt, nullptr, {0, 0, 0}, 0).illuminance_lx ==
           doctest::Approx(luminance_nt * illuminance_below_square(half_side, height)).epsilon(1e-6));
 
     for (const bool has_blocker : {false, true}) {
@@ -169,7 +171,7 @@ TEST_CASE("area_lamp_over_a_plane_is_what_gnomon_irradiance_says") {
         for (std::size_t pixel = 0; pixel < sight.hits.size(); ++pixel) {
             if (sight.hits[pixel].geometry_id != 0) continue;
             const auto irradiance = floor_irradiance(lamp, luminance_nt, has_blocker ? traced.handle.get() : nullptr,
-                                                     floor_point(view, pixel) + above_floor);
+                                                     floor_point(view, pixel) + above_floor, pixel);
             floor_pixels.push_back(pixel);
             expected.push_back(irradiance.illuminance_lx * reflectance / std::numbers::pi);
             all.add(expected.back());
