@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <limits>
 #include <map>
 
 #include "render/camera.hpp"
@@ -18,6 +17,11 @@ namespace {
 constexpr int most_pixels_a_side = 16'384;
 
 const std::map<std::string, Method> method_names = {{"path", Method::path}, {"whitted", Method::whitted}};
+
+std::string is_luminance(const std::string& text) {
+    const float nits = std::strtof(text.c_str(), nullptr);
+    return nits >= 0 && std::isfinite(nits) ? "" : "\"" + text + "\" is no luminance: a finite number of at least 0";
+}
 
 /// CLI11's ranges let it through.
 std::string no_nan(const std::string& text) {
@@ -35,13 +39,14 @@ void declare(CLI::App& app, Options& options) {
     app.add_option("--height", render.height, "pixels; the width follows from the camera")
         ->check(CLI::Range(1, most_pixels_a_side));
     app.add_option("--samples", render.sample_count, "paths a pixel")->check(CLI::Range(1, 1 << 20))->capture_default_str();
-    app.add_option("--method", render.method, "path: all light, by path tracing; whitted: direct light, mirrors and glass")
-        ->transform(CLI::CheckedTransformer(method_names))
+    app.add_option_function<std::string>(
+           "--method", [&render](const std::string& name) { render.method = method_names.at(name); },
+           "path: all light, by path tracing; whitted: direct light, mirrors and glass")
+        ->check(CLI::IsMember(method_names))
         ->default_str("path");
     app.add_option("--camera", options.camera, "its name, or its index in the order of the scene's nodes (0)");
     app.add_option("--environment", options.environment_nt, "luminance of the sky in nt, instead of the scene's")
-        ->check(CLI::Range(0.0F, std::numeric_limits<float>::max()))
-        ->check(no_nan);
+        ->check(is_luminance);
     app.add_option("--exposure", options.exposure_ev100, "of the .png, as EV at ISO 100 (by the mean luminance)")
         ->check(CLI::Range(-40.0, 60.0))
         ->check(no_nan);
