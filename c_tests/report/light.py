@@ -7,6 +7,7 @@ import math
 
 import matplotlib
 from matplotlib.lines import Line2D
+from matplotlib.ticker import EngFormatter
 
 from figures import unique
 from picture import COLOURS, QUIET, STYLE, TEXT, Panels, name_ticks, polished
@@ -25,7 +26,8 @@ def light_data(light, furnace):
             "furnace": [{"method": method["method"], **row} for method in (furnace["methods"] if furnace else []) for row in method["classes"]]}
 
 
-def draw_errors(panels, axes, rows, key, label, title):
+def draw_errors(panels, axes, rows, key, figures, title):
+    """`figures`: those of all panels over this one's scale."""
     for estimator in unique(row["estimator"] for row in rows):
         own = [row for row in rows if row["estimator"] == estimator]
         colour = ESTIMATOR_COLOURS[estimator]
@@ -36,7 +38,7 @@ def draw_errors(panels, axes, rows, key, label, title):
             panels.titles[gid] = (f"{estimator}, {row['lamp']}: {row['samples']:,} samples, {row['seconds']:.2g} s, error {row['rms_error']:.2g}, "
                                   f"stated {row['rms_standard_error']:.2g}")
             axes.plot(row[key], row["rms_error"], linestyle="none", gid=gid, marker="o", markersize=5, color=colour)
-    figures, errors = [row[key] for row in rows], [value for row in rows for value in (row["rms_error"], row["rms_standard_error"]) if value]
+    errors = [value for row in rows for value in (row["rms_error"], row["rms_standard_error"]) if value]
     axes.set(xscale="log", yscale="log", xlim=(min(figures) / SIDE_MARGIN, max(figures) * SIDE_MARGIN),
              ylim=(min(errors) / SIDE_MARGIN, max(errors) * SIDE_MARGIN))
     if key == "samples":
@@ -45,8 +47,10 @@ def draw_errors(panels, axes, rows, key, label, title):
         axes.plot([first, last], [level, level * math.sqrt(first / last)], color=QUIET, linewidth=0.8, linestyle="--", zorder=0)
     for axis in (axes.xaxis, axes.yaxis):
         name_ticks(axis)
+    if key == "samples":
+        axes.xaxis.set_major_formatter(EngFormatter(sep=""))  # a million as 1M: with all zeros it does not fit beside the next
     axes.set_title(title, loc="left", fontsize=11, color=TEXT)
-    axes.set_xlabel(label)
+    axes.set_xlabel(key)
     axes.set_ylabel("error (down is better)")
     axes.grid(True, which="major", linewidth=0.8)
     axes.set_axisbelow(True)
@@ -59,9 +63,8 @@ def convergence_picture(rows):
         panels = Panels(2, len(lamps), sharex="col")
         for index, lamp in enumerate(lamps):
             own = [row for row in rows if row["lamp"] == lamp]
-            by_samples, by_seconds = panels.axes[2 * index:2 * index + 2]
-            draw_errors(panels, by_samples, own, "samples", "samples", f"A {lamp}: error against samples")
-            draw_errors(panels, by_seconds, own, "seconds", "seconds", f"A {lamp}: error against time")
+            for axes, key, name in zip(panels.axes[2 * index:], ("samples", "seconds"), ("samples", "time")):
+                draw_errors(panels, axes, own, key, [row[key] for row in rows], f"A {lamp}: error against {name}")
         entries = [Line2D([], [], color=ESTIMATOR_COLOURS[name], marker="o", label=name) for name in unique(row["estimator"] for row in rows)]
         entries += [Line2D([], [], color=TEXT, linestyle=":", label="stated standard error"),
                     Line2D([], [], color=QUIET, linestyle="--", label="1 / √samples")]

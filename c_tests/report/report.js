@@ -114,7 +114,7 @@ function barSection() {
 
 // ---- light
 
-const tiny = value => value == null ? "–" : value >= 0.001 ? significant(value) : value.toExponential(1);
+const tiny = value => value == null ? "–" : value === 0 || value >= 0.001 ? significant(value) : value.toExponential(1);
 
 function convergenceSection() {
   return element("details", {}, element("summary", { className: "quiet", textContent: "The same in figures" }), table(results.convergence, [
@@ -123,7 +123,7 @@ function convergenceSection() {
 }
 
 const furnaceName = { path: "path tracing", whitted: "Whitted’s method" };
-const furnaceMark = (value, row) => Math.abs(value - 1) <= 4 * row.standard_error + 1e-6 ? "good" : "bad";  // pictures are in float
+const furnaceMark = (value, row) => value == null ? "" : Math.abs(value - 1) <= 4 * row.standard_error + 1e-6 ? "good" : "bad";  // pictures are in float
 
 function furnaceSection() {
   return captioned("The furnace decides", "Bodies that reflect or pass all light, in an environment of 1 nt: all they show must be 1 nt, or the method loses or makes light. " +
