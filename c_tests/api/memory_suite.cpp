@@ -112,3 +112,19 @@ TEST_CASE("geometry_too_large_for_the_address_space_is_out_of_memory_and_the_bui
     REQUIRE(gnomon_scene_builder_add_triangles(builder.get(), &small_triangles, &geometry_id) == GNOMON_OK);
     CHECK(geometry_id == 1);
 }
+
+TEST_CASE("samples_that_no_memory_can_hold_are_out_of_memory") {
+    const SceneHandle scene = build_scene({unit_triangle(1)});
+    const GnomonSphereSource sphere{{0, 0, 2}, 0.5f, 100};
+    GnomonSources sources{};
+    sources.struct_size = sizeof sources;
+    sources.spheres = &sphere, sources.sphere_count = 1;
+    const float point[3] = {0, 0, 0}, up[3] = {0, 0, 1};
+    GnomonIrradianceOptions options;
+    gnomon_irradiance_options_init(&options);
+    options.sample_count = UINT64_MAX;
+    GnomonIrradiance answer{7, 7, 7};
+    CHECK(gnomon_irradiance(scene.get(), &sources, point, up, &options, &answer) == GNOMON_ERROR_OUT_OF_MEMORY);
+    CHECK(last_error() == "there is no memory for 18446744073709551615 samples");
+    CHECK((answer.illuminance_lx == 7 && answer.standard_error_lx == 7 && answer.ray_count == 7));
+}

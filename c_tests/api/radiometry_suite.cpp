@@ -514,17 +514,6 @@ TEST_CASE("sizes_and_counts_that_are_wrong_are_named") {
     CHECK(same_bits(answer, {7, 7, 7}));
 }
 
-TEST_CASE("samples_that_no_memory_can_hold_are_an_error") {
-    const SceneHandle scene = build_scene({unit_triangle(1)});
-    const std::vector<GnomonSphereSource> spheres{kSphere};
-    const GnomonSources sources = of(spheres);
-    const GnomonIrradianceOptions options = irradiance_options(UINT64_MAX);
-    GnomonIrradiance answer{7, 7, 7};
-    CHECK(gnomon_irradiance(scene.get(), &sources, kOrigin, kUp, &options, &answer) == GNOMON_ERROR_OUT_OF_MEMORY);
-    CHECK(last_error() == "there is no memory for 18446744073709551615 samples");
-    CHECK(same_bits(answer, {7, 7, 7}));
-}
-
 TEST_CASE("receivers_that_are_none_are_named") {
     const std::vector<GnomonPointSource> points{kPoint};
     irradiance_fails(of(points), "point is (0, NaN, 1), which is not finite", {0, kNan, 1});
