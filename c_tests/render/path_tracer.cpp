@@ -49,12 +49,14 @@ void add_lamp_ray(const TracedScene& traced, const RenderOptions& options, const
 /// Whether the path goes on: by chance once it matters little, and then it stands for those that ended (Arvo and Kirk 1990,
 /// "Particle transport and image synthesis").
 ///
-/// Where nothing absorbs, paths have to end too. In glass light goes round for hundreds of bounces: with 0.95 there, 0.14 % of
-/// the furnace's light was in paths too rare for any picture to have.
+/// Where nothing absorbs, paths have to end too, but late: light goes round in glass for thousands of bounces. With 0.95 from the
+/// third bounce on, 0.14 % of the furnace's light was in paths too rare for any picture to have, with 0.999 still 0.015 %; with
+/// as many sure bounces 0.001 %, at no cost in time.
 bool survives(int bounce, Path& path) {
-    constexpr int sure_bounces = 3;
+    constexpr int sure_bounces = 3, sure_without_choice = 1 << 14;
     if (bounce < sure_bounces) return true;
-    const double most = std::isinf(path.density_per_sr) ? 0.999 : 0.95;
+    const bool has_choice = !std::isinf(path.density_per_sr);
+    const double most = has_choice ? 0.95 : bounce < sure_without_choice ? 1 : 0.999;
     const double probability = std::min(most, static_cast<double>(largest(path.weight)));
     if (!(path.rng.uniform() < probability)) return false;
     path.weight = static_cast<float>(1 / probability) * path.weight;
