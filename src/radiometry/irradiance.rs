@@ -57,9 +57,9 @@ pub fn irradiance(
 ) -> Result<IrradianceEstimate, RadiometryError> {
     let receiver = Receiver { point: finite("point", point)?, normal: unit("normal", normal)? };
     let mut view = View { scene, receiver, options, ray_count: 0 };
-    let from_lamps = view.from_lamps(sources)?;
+    let from_lamps = view.lamps(sources)?;
     let patches = Patches::of(sources, &receiver)?;
-    let (from_patches, standard_error) = view.from_patches(&patches)?;
+    let (from_patches, standard_error) = view.patches(&patches)?;
     Ok(IrradianceEstimate { illuminance: from_lamps + from_patches, standard_error, ray_count: view.ray_count })
 }
 
@@ -80,7 +80,7 @@ struct View<'a> {
 
 impl View<'_> {
     /// From what has no extent.
-    fn from_lamps(&mut self, sources: &Sources) -> Result<Illuminance, RadiometryError> {
+    fn lamps(&mut self, sources: &Sources) -> Result<Illuminance, RadiometryError> {
         let receiver = self.receiver;
         let mut sum = Illuminance::new(0.0);
         for (index, source) in sources.points.iter().enumerate() {
@@ -111,7 +111,7 @@ impl View<'_> {
     }
 
     /// From what has an extent, and the standard error.
-    fn from_patches(&mut self, patches: &Patches) -> Result<(Illuminance, Illuminance), RadiometryError> {
+    fn patches(&mut self, patches: &Patches) -> Result<(Illuminance, Illuminance), RadiometryError> {
         let total = patches.total();
         let none = Illuminance::new(0.0);
         let Some(scene) = self.scene.filter(|_| total > 0.0) else { return Ok((Illuminance::new(total), none)) };

@@ -108,7 +108,8 @@ impl Patches {
 
     fn add(&mut self, shape: Shape, luminance: Luminance, projected_sr: f64) -> Result<(), RadiometryError> {
         let illuminance_lx = luminance.irradiance(projected_sr).value();
-        if !(illuminance_lx > 0.0) {
+        let sends = illuminance_lx > 0.0; // false for a NaN
+        if !sends {
             return Ok(());
         }
         let count = self.patches.len() + 1;

@@ -53,7 +53,8 @@ pub fn sample_triangle(point: DVec3, vertices: [DVec3; 3], u: f64, v: f64) -> Di
     let solid_angle_sr = triangle_sr(point, vertices);
     let rays = vertices.map(|vertex| vertex - point);
     let [a, b, c] = rays.map(DVec3::normalize_or_zero);
-    if !(solid_angle_sr > 0.0) {
+    let is_seen = solid_angle_sr > 0.0; // false for a NaN
+    if !is_seen {
         return DirectionSample { direction: a, density_per_sr: 0.0 };
     }
     // The third vertex moves along the arc from a to c until the triangle has u of its solid angle.

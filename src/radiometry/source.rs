@@ -195,7 +195,8 @@ fn shine(
     attenuation: impl FnOnce(DVec3) -> f64,
 ) -> Result<Option<Direct>, RadiometryError> {
     let intensity = LuminousIntensity::new(not_negative("intensity_cd", intensity_cd)?);
-    if !(range_m >= 0.0) {
+    let is_range = range_m >= 0.0; // false for a NaN
+    if !is_range {
         let expected = "above 0 (0 and infinity: no range)";
         return Err(RadiometryError::Value { what: "range_m", value: f64::from(range_m), expected });
     }
