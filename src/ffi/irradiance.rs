@@ -197,7 +197,7 @@ pub unsafe extern "C-unwind" fn gnomon_irradiance(
 /// "Inner and outer cone angles".
 #[unsafe(no_mangle)]
 pub extern "C-unwind" fn gnomon_spot_attenuation(angle_rad: f64, inner_cone_rad: f64, outer_cone_rad: f64) -> f64 {
-    number_or_nan(|| Ok(Cone::new(inner_cone_rad, outer_cone_rad)?.attenuation(angle_rad.cos())))
+    number_or_nan(|| Ok(Cone::new(inner_cone_rad, outer_cone_rad)?.attenuation(angle_rad)))
 }
 
 /// The share of a source's intensity that a range leaves at a distance: `max(min(1 - (distance / range)^4, 1), 0)`, besides the inverse
