@@ -127,10 +127,13 @@ impl SlabRay {
 /// A [`SlabRay`] for rays of which no direction component is zero, or as good as zero, or beyond 2^60, as nearly all
 /// are, and no `t_min` below 0. They need no scaling. A plane is met at `plane * inverse + offset`, fused or not.
 ///
-/// The origin's sum with the slack, its product and the plane's round once each, before they cancel: `gamma(4)` of the
+/// The origin's product, its sum with the slack and the plane's product round once each, before they cancel: `gamma(4)` of the
 /// origin covers that.
+///
+/// The slack lets boxes in that end just behind the origin, as those of a surface do that the ray leaves: see [`BEHIND`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ObliqueSlabs {
+    pub(crate) origin: Vec4,
     pub(crate) inverse: Vec4,
     /// For near planes: the slab begins no later than this says.
     pub(crate) near_offset: Vec4,
@@ -140,7 +143,15 @@ pub(crate) struct ObliqueSlabs {
     pub(crate) negative: u32,
     /// Of the ray; not negative, nor negative zero.
     pub(crate) t_min: f32,
+    /// What ends behind the origin is said to end no later than this.
+    pub(crate) doubtful_until: f32,
 }
+
+/// What ends, along any axis, where `(plane - origin) * inverse` is less than this has no hit at 0 or after: triangles by their test's
+/// rule (`triangle_hit.rs`), spheres by themselves. So its boxes need not be visited. No slack is needed: the difference has the
+/// right sign, and what is said of a box holds for all that is in it, because all is monotonic in the plane. A `t` that rounds to
+/// 0 may be negative by less.
+pub(crate) const BEHIND: f32 = -f32::MIN_POSITIVE;
 
 impl ObliqueSlabs {
     /// `corners` are those of the scene. `None` for other rays, and for those that are not valid.
@@ -158,15 +169,17 @@ impl ObliqueSlabs {
         }
         let reach = reach.max(reach.yzzz()).max(reach.zzzz()).x;
         let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
-        // Whichever plane is the near one, as seen from a little further on; the far one from a little before.
-        let slack = (Vec4::splat(slack_distance) + origin.abs() * gamma(4)).copysign(direction);
+        let slack = (origin.abs() * gamma(4) + slack_distance) * inverse.abs();
+        let offset = -inverse * origin;
         Some(Self {
+            origin,
             inverse,
-            near_offset: -inverse * (origin + slack),
-            far_offset: -inverse * (origin - slack),
+            near_offset: offset - slack,
+            far_offset: offset + slack,
             negative: direction.is_negative_bitmask(),
             // Of two zeros the positive one.
             t_min: ray.t_min + 0.0,
+            doubtful_until: 2.0 * slack.max(slack.yzzz()).max(slack.zzzz()).x,
         })
     }
 }

@@ -18,7 +18,7 @@ mod triangle;
 mod triangle_hit;
 
 pub use aabb::Aabb;
-pub(crate) use aabb::{ObliqueSlabs, SlabRay, band_distance};
+pub(crate) use aabb::{BEHIND, ObliqueSlabs, SlabRay, band_distance};
 pub(crate) use clip::Polygon;
 pub(crate) use crossing::Crossing;
 pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};

@@ -14,10 +14,10 @@
 
 use std::ops::{Mul, Neg, Sub};
 
-use glam::Vec4;
+use glam::{Vec4, Vec4Swizzles};
 
 use super::evaluation::Evaluation;
-use super::{Ray, Triangle};
+use super::{BEHIND, Ray, Triangle};
 use crate::math::{DoubleDouble, UNIT_ROUNDOFF};
 use crate::simd::{Scalar, Simd};
 
@@ -117,16 +117,14 @@ impl TriangleRay {
     /// Expects a valid ray.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        // The bits of magnitudes have their order; of equal components the first is taken, so that the choice is the same
-        // everywhere. Without a branch, which no CPU could foresee.
-        let magnitude = |value: f32| value.to_bits() & !(1 << 31);
-        let [x, y, z] = [magnitude(ray.direction.x), magnitude(ray.direction.y), magnitude(ray.direction.z)];
-        let (is_y, is_z) = (usize::from(y > x), usize::from(z > x.max(y)));
-        let kz = 2 * is_z + (is_y & !is_z);
-        // Two bits for each axis: the next one, and the one after that.
-        let (kx, ky) = (0b00_10_01 >> (2 * kz) & 3, 0b01_00_10 >> (2 * kz) & 3);
         // Four lanes at a time, and one store for each: a load that is wider than the stores before it waits for them.
         let (origin, direction) = (ray.origin.extend(0.0), ray.direction.extend(1.0));
+        // Of equal components the first is taken, so that the choice is the same everywhere.
+        let magnitude = direction.abs();
+        let largest = magnitude.max(magnitude.yzxw()).max(magnitude.zxyw());
+        let kz = magnitude.cmpeq(largest).bitmask().trailing_zeros() as usize % 4;
+        // Two bits for each axis: the next one, and the one after that.
+        let (kx, ky) = (0b00_10_01 >> (2 * kz) & 3, 0b01_00_10 >> (2 * kz) & 3);
         let per_z = direction / Vec4::splat(direction.to_array()[kz & 3]);
         Self { origin: origin.to_array(), direction: direction.to_array(), axes: [kx, ky, kz], per_z: per_z.to_array() }
     }
@@ -149,7 +147,7 @@ impl TriangleRay {
         if edges.iter().all(|edge| *edge != 0.0)
             && let Some(hit) = P::evaluate_sheared(self, &corners, &edges, &z)
         {
-            return Some(hit).filter(|hit| interval.contains(hit.t));
+            return Some(hit).filter(|hit| interval.contains(hit.t) && !self.ends_before(hit, &corners));
         }
         // A hit's t lies between those of its vertices.
         let is_behind = z.iter().all(|z| z / self.direction[self.axes[2]] < 0.0);
@@ -188,6 +186,26 @@ impl TriangleRay {
     pub(super) fn deciding_weights(&self, triangle: &Triangle) -> Option<[f64; 3]> {
         let (x, y, _) = self.shear(&self.corners(triangle));
         sheared_weights(&x, &y).filter(|weights| weights.iter().sum::<f64>().is_finite())
+    }
+
+    /// Whether a hit at 0 or after is that of a triangle that ends behind the origin along some axis (see [`BEHIND`]). The ray
+    /// leaves it behind, and begins within the band of it.
+    ///
+    /// A point `Q` of the triangle was sheared onto the ray. Along that axis it is `|Qa|` behind the origin, and where the ray is then
+    /// `|slope Qz|` ahead; together no more than the band, `2u |Qa| + 4u |slope| max |az|`. So both are as small as that.
+    #[inline(always)]
+    fn ends_before(&self, hit: &TriangleHit, corners: &Corners) -> bool {
+        hit.t >= 0.0 && (self.leaves(corners, 0) || self.leaves(corners, 1) || self.leaves(corners, 2))
+    }
+
+    #[inline(always)]
+    fn leaves(&self, corners: &Corners, axis: usize) -> bool {
+        let of_scene = self.axes[axis] & 3;
+        let (origin, inverse) = (self.origin[of_scene], 1.0 / self.direction[of_scene]);
+        let [a, b, c] = corners[axis];
+        let (a, b, c) = ((a - origin) * inverse, (b - origin) * inverse, (c - origin) * inverse);
+        // Of a zero direction component the inverse is infinite: the ray does not leave.
+        inverse.is_finite() & (a < BEHIND) & (b < BEHIND) & (c < BEHIND)
     }
 
     /// Relative to the origin, so that the ray is the axis of z.
@@ -235,7 +253,8 @@ impl PrecisionMode for Fast {
         _interval: Interval,
     ) -> Option<TriangleHit> {
         let weights = sheared_weights(x, y)?;
-        Some(ray.interpolate(&weights, &ray.main_axis_distances(triangle)))
+        let hit = ray.interpolate(&weights, &ray.main_axis_distances(triangle));
+        (!ray.ends_before(&hit, &ray.corners(triangle))).then_some(hit)
     }
 
     /// `t` from the triangle's plane or from the weights, whichever is off by less. In roundings, times the distance from the
@@ -277,7 +296,8 @@ impl PrecisionMode for Fast {
     #[inline(always)]
     fn evaluate_certain<S: Simd>(_simd: S, ray: &TriangleRay, corners: &Corners, _t_min: f32) -> Option<Evaluation> {
         let (x, y, z) = ray.shear(corners);
-        Self::evaluate_sheared(ray, corners, &edge_functions(&x, &y), &z).map(Evaluation::Inside)
+        let hit = Self::evaluate_sheared(ray, corners, &edge_functions(&x, &y), &z)?;
+        Some(if ray.ends_before(&hit, corners) { Evaluation::Behind } else { Evaluation::Inside(hit) })
     }
 }
 
@@ -294,18 +314,22 @@ impl PrecisionMode for Accurate {
         interval: Interval,
     ) -> Option<TriangleHit> {
         let sheared = sheared_weights(x, y)?;
-        match Evaluation::inside::<_, Self>(Scalar, ray, &ray.corners(triangle), interval.t_min)
-            .unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle))
-        {
-            Evaluation::Inside(hit) => Some(hit),
-            Evaluation::Behind => None,
-            Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => None,
-            Evaluation::Outside => Some(within_the_band(ray, triangle, &sheared)),
-            Evaluation::Near { hit, .. } => evaluate_slowly(ray, triangle, interval, || hit),
+        let corners = ray.corners(triangle);
+        let evaluation = match Evaluation::inside::<_, Self>(Scalar, ray, &corners, interval.t_min) {
+            Some(Evaluation::Inside(hit)) => return Some(hit),
+            evaluation => evaluation.unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle)),
+        };
+        let hit = match evaluation {
+            Evaluation::Inside(hit) => hit,
+            Evaluation::Behind => return None,
+            Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => return None,
+            Evaluation::Outside => within_the_band(ray, triangle, &sheared),
+            Evaluation::Near { hit, .. } => evaluate_slowly(ray, triangle, interval, || hit)?,
             Evaluation::Uncertain => {
-                evaluate_slowly(ray, triangle, interval, || within_the_band(ray, triangle, &sheared))
+                evaluate_slowly(ray, triangle, interval, || within_the_band(ray, triangle, &sheared))?
             }
-        }
+        };
+        (!ray.ends_before(&hit, &corners)).then_some(hit)
     }
 
     #[inline(always)]
@@ -611,6 +635,27 @@ mod tests {
             }
         }
         assert_eq!(directions, 2 * 19 * 19);
+    }
+
+    #[test]
+    fn a_ray_that_leaves_all_of_a_triangle_along_an_axis_misses_it() {
+        // Large triangles in a floor, and rays from one float above an edge: within the band of it.
+        let interval = Interval { t_min: 0.0, t_max: f32::INFINITY };
+        let directions = [(1.0, 0.9), (0.8, -1.0), (-1.0, -1.0), (-0.7, 1.0), (1.0, -1.0), (1.0, 1.0), (0.1, -0.3)];
+        for (floor, size) in [(77.925f32, 160.0f32), (0.1, 160.0), (1e-3, 100.0), (3.0, 1000.0), (1e-7, 1.0)] {
+            let triangle = Triangle::new([[-size, floor, -size], [size, floor, size], [size, floor, -size]], 0, 0);
+            for step in -200..=200i16 {
+                let at = f32::from(step) * size / 400.0;
+                let origin = Vec3::new(at, floor.next_up(), at);
+                for (rise, (x, z)) in [1e-3, 0.1, 0.5, 1.0].into_iter().flat_map(|rise| directions.map(|d| (rise, d))) {
+                    let ray = Ray { origin, t_min: 0.0, direction: Vec3::new(x, rise, z), t_max: f32::INFINITY };
+                    let ray = TriangleRay::new(&ray);
+                    assert_eq!(ray.hit::<Fast>(&triangle, interval), None, "{ray:?}");
+                    assert_eq!(ray.hit::<Accurate>(&triangle, interval), None, "{ray:?}");
+                    assert_eq!(ray.hit::<Exact>(&triangle, interval), None, "{ray:?}");
+                }
+            }
+        }
     }
 
     #[test]

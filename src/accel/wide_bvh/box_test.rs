@@ -3,7 +3,7 @@
 use glam::Vec4;
 
 use super::node::WideNode;
-use crate::geometry::{ObliqueSlabs, SlabRay};
+use crate::geometry::{BEHIND, ObliqueSlabs, SlabRay};
 use crate::simd::{LANES, Simd};
 
 /// A ray as box tests want it, to be kept in memory.
@@ -33,6 +33,8 @@ pub(super) struct PreparedOblique<S: Simd> {
     near_offset: [S::F32x8; 3],
     far_offset: [S::F32x8; 3],
     t_min: S::F32x8,
+    doubtful_until: S::F32x8,
+    origin: Vec4,
 }
 
 impl Oblique {
@@ -66,11 +68,23 @@ impl Boxes for Oblique {
             near_offset: splat4(simd, &slabs.near_offset),
             far_offset: splat4(simd, &slabs.far_offset),
             t_min: simd.splat(slabs.t_min),
+            doubtful_until: simd.splat(slabs.doubtful_until),
+            origin: slabs.origin,
         }
     }
 }
 
 impl<S: Simd> PreparedOblique<S> {
+    /// The slots whose boxes do not end behind the origin: see [`BEHIND`].
+    #[inline(always)]
+    fn ahead(&self, simd: S, node: &WideNode) -> u32 {
+        let end = |axis: usize| {
+            let far = simd.sub(simd.load(self.planes(node, axis).1), simd.splat(self.origin[axis]));
+            simd.mul(far, self.inverse[axis])
+        };
+        simd.less_or_equal(simd.splat(BEHIND), simd.min(end(0), simd.min(end(1), end(2))))
+    }
+
     #[inline(always)]
     fn planes<'a>(&self, node: &'a WideNode, axis: usize) -> (&'a [f32; LANES], &'a [f32; LANES]) {
         let rows = node.planes[axis].as_flattened();
@@ -95,7 +109,12 @@ impl<S: Simd> BoxTest<S> for PreparedOblique<S> {
         // A NaN, from a product that overflowed, decides nothing: the other operand is kept.
         let enter = simd.max(near_x, simd.max(near_y, simd.max(near_z, self.t_min)));
         let leave = simd.min(far_x, simd.min(far_y, simd.min(far_z, simd.splat(t_max))));
-        (simd.less_or_equal(enter, leave), enter)
+        let mut hits = simd.less_or_equal(enter, leave);
+        // Rarely, but for rays that leave a surface.
+        if hits & simd.less_or_equal(leave, self.doubtful_until) != 0 {
+            hits &= self.ahead(simd, node);
+        }
+        (hits, enter)
     }
 }
 

@@ -18,7 +18,7 @@ use crate::simd::Simd;
 pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
     fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray) -> Self;
 
-    /// For directions of unusual length.
+    /// For directions of unusual length, and rays from behind their origins.
     fn check_range(&mut self);
 
     fn t_min(&self) -> f32;
@@ -147,10 +147,11 @@ impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
         Self { bvh, ray: TriangleRay::new(ray), t_min: ray.t_min, edge_slack: [slack, least_doubt(slack)] }
     }
 
-    /// For directions so short that `1 / dz` overflows: its bounds of `t` then decide nothing, being NaN.
+    /// For directions so short that `1 / dz` overflows: its bounds of `t` then decide nothing, being NaN. Nor must they where `t`
+    /// may be negative: whether a triangle behind the origin is hit depends on its `t` (see `TriangleRay::ends_before`).
     #[inline(always)]
     fn check_range(&mut self) {
-        if self.ray.per_z[3].is_infinite() {
+        if self.ray.per_z[3].is_infinite() || self.t_min < 0.0 {
             self.ray.per_z[3] = f32::NAN;
         }
     }

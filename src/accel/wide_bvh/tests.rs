@@ -2,12 +2,15 @@
 
 use std::time::{Duration, Instant};
 
+use glam::Vec3;
+
 use super::leaves::{ByAxis, LeafForm, LeafTriangles, TriangleForm};
 use super::node::Child;
 use super::{Compact, WideBvh, check_count};
+use crate::accel::leaf::Counted;
 use crate::accel::{BuildContext, BuildFailure, PrimitiveSource, Quality, Reference, Watch};
-use crate::geometry::{Aabb, Triangle};
-use crate::simd::Isa;
+use crate::geometry::{Aabb, Accurate, Ray, Triangle};
+use crate::simd::{Isa, Scalar};
 
 /// One geometry.
 struct Soup {
@@ -139,6 +142,44 @@ fn high_cuts_long_diagonal_triangles_and_no_others() {
     assert!(high.reference_count > 21_000 && high.reference_count <= 25_000, "{} references", high.reference_count);
     let soup = height_field(100);
     assert_eq!(soup.build(Quality::High, Isa::Auto, 2).shape().reference_count, soup.triangles.len());
+}
+
+/// Off its surface by a float, in a scene that is large beside that.
+#[test]
+fn a_ray_that_leaves_a_wall_tests_none_of_it() {
+    const SIDE: u32 = 64;
+    let at = |step: u32| step as f32 * 3.7 - 41.0;
+    let wall = |axis: usize| {
+        Soup::new(2 * SIDE * SIDE, move |id| {
+            let (x, y) = (id / 2 % SIDE, id / 2 / SIDE);
+            let (x, y) = ([at(x), at(x + 1)], [at(y), at(y + 1)]);
+            let corners = if id % 2 == 0 { [(0, 0), (1, 0), (0, 1)] } else { [(1, 1), (0, 1), (1, 0)] };
+            corners.map(|(right, up)| {
+                let mut corner = [0.0; 3];
+                (corner[axis], corner[(axis + 1) % 3], corner[(axis + 2) % 3]) = (77.925, x[right], y[up]);
+                corner
+            })
+        })
+    };
+    for axis in 0..3 {
+        let bvh = wall(axis).build(Quality::Medium, Isa::Scalar, 1);
+        for step in 0..500 {
+            let mut origin = Vec3::splat(0.0);
+            let mut direction =
+                Vec3::new(random(3 * step) - 0.5, random(3 * step + 1) - 0.5, random(3 * step + 2) - 0.5);
+            for other in [(axis + 1) % 3, (axis + 2) % 3] {
+                origin[other] = 150.0 * random(1000 * other as u32 + step) - 20.0;
+            }
+            direction[axis] = direction[axis].abs() + 1e-6;
+            for side in [-1.0, 1.0] {
+                origin[axis] = if side > 0.0 { 77.925f32.next_up() } else { 77.925f32.next_down() };
+                direction[axis] = side * direction[axis].abs();
+                let ray = Ray { origin, t_min: 0.0, direction, t_max: f32::INFINITY };
+                let (hit, counts) = bvh.find::<Counted, Accurate, _>(Scalar, ray);
+                assert!(hit.is_none() && counts.primitives_tested == 0, "{ray:?}");
+            }
+        }
+    }
 }
 
 #[test]
