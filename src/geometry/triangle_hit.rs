@@ -10,7 +10,8 @@
 //! minus the origin, and `|dx / dz| <= 1`, the sheared `x = ax - (dx / dz) az` is off by at most `2u |ax| + 4u |az|`
 //! (one rounding of the result, one of each difference, and of the quotient and the product) plus `3 * 2^-149` where
 //! something underflows. That is the band: a triangle
-//! that the ray passes at less than this distance may be taken for hit, its neighbour then is refused.
+//! that the ray passes at less than this distance may be taken for hit, its neighbour then is refused. One that ends behind the origin
+//! along an axis is refused all the same.
 
 use std::ops::{Mul, Neg, Sub};
 
@@ -147,7 +148,7 @@ impl TriangleRay {
         if edges.iter().all(|edge| *edge != 0.0)
             && let Some(hit) = P::evaluate_sheared(self, &corners, &edges, &z)
         {
-            return Some(hit).filter(|hit| interval.contains(hit.t) && !self.ends_before(hit, &corners));
+            return Some(hit).filter(|hit| interval.contains(hit.t) && !self.ends_behind(hit, &corners));
         }
         // A hit's t lies between those of its vertices.
         let is_behind = z.iter().all(|z| z / self.direction[self.axes[2]] < 0.0);
@@ -194,12 +195,15 @@ impl TriangleRay {
     /// A point `Q` of the triangle was sheared onto the ray. Along that axis it is `|Qa|` behind the origin, and where the ray is then
     /// `|slope Qz|` ahead; together no more than the band, `2u |Qa| + 4u |slope| max |az|`. So both are as small as that.
     #[inline(always)]
-    fn ends_before(&self, hit: &TriangleHit, corners: &Corners) -> bool {
-        hit.t >= 0.0 && (self.leaves(corners, 0) || self.leaves(corners, 1) || self.leaves(corners, 2))
+    fn ends_behind(&self, hit: &TriangleHit, corners: &Corners) -> bool {
+        hit.t >= 0.0
+            && (self.ends_behind_along(corners, 0)
+                || self.ends_behind_along(corners, 1)
+                || self.ends_behind_along(corners, 2))
     }
 
     #[inline(always)]
-    fn leaves(&self, corners: &Corners, axis: usize) -> bool {
+    fn ends_behind_along(&self, corners: &Corners, axis: usize) -> bool {
         let of_scene = self.axes[axis] & 3;
         let (origin, inverse) = (self.origin[of_scene], 1.0 / self.direction[of_scene]);
         let [a, b, c] = corners[axis];
@@ -254,7 +258,7 @@ impl PrecisionMode for Fast {
     ) -> Option<TriangleHit> {
         let weights = sheared_weights(x, y)?;
         let hit = ray.interpolate(&weights, &ray.main_axis_distances(triangle));
-        (!ray.ends_before(&hit, &ray.corners(triangle))).then_some(hit)
+        (!ray.ends_behind(&hit, &ray.corners(triangle))).then_some(hit)
     }
 
     /// `t` from the triangle's plane or from the weights, whichever is off by less. In roundings, times the distance from the
@@ -297,7 +301,7 @@ impl PrecisionMode for Fast {
     fn evaluate_certain<S: Simd>(_simd: S, ray: &TriangleRay, corners: &Corners, _t_min: f32) -> Option<Evaluation> {
         let (x, y, z) = ray.shear(corners);
         let hit = Self::evaluate_sheared(ray, corners, &edge_functions(&x, &y), &z)?;
-        Some(if ray.ends_before(&hit, corners) { Evaluation::Behind } else { Evaluation::Inside(hit) })
+        Some(if ray.ends_behind(&hit, corners) { Evaluation::Behind } else { Evaluation::Inside(hit) })
     }
 }
 
@@ -329,7 +333,7 @@ impl PrecisionMode for Accurate {
                 evaluate_slowly(ray, triangle, interval, || within_the_band(ray, triangle, &sheared))?
             }
         };
-        (!ray.ends_before(&hit, &corners)).then_some(hit)
+        (!ray.ends_behind(&hit, &corners)).then_some(hit)
     }
 
     #[inline(always)]

@@ -148,7 +148,7 @@ impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     }
 
     /// For directions so short that `1 / dz` overflows: its bounds of `t` then decide nothing, being NaN. Nor must they where `t`
-    /// may be negative: whether a triangle behind the origin is hit depends on its `t` (see `TriangleRay::ends_before`).
+    /// may be negative: whether a triangle behind the origin is hit depends on its `t` (see `TriangleRay::ends_behind`).
     #[inline(always)]
     fn check_range(&mut self) {
         if self.ray.per_z[3].is_infinite() || self.t_min < 0.0 {

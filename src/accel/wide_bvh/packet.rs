@@ -294,7 +294,7 @@ impl Rays {
             let ray: Ray = source.into();
             let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
             let inverse = Vec3A::ONE / direction;
-            // As `SlabRay::fused_offsets`, all axes at once.
+            // As `ObliqueSlabs`.
             let reach = (upper - origin).max(origin - lower).max_element();
             if P::IS_EXACT {
                 rays.edge_slack = rays.edge_slack.max(edge_slack(reach));

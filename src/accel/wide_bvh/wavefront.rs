@@ -443,7 +443,7 @@ where
         let [kx, ky, kz] = triangle_ray.axes;
         let origin = Vec3A::from(ray.origin);
         let inverse = Vec3A::ONE / Vec3A::from(ray.direction);
-        // As `SlabRay::fused_offsets`, all axes at once.
+        // As `ObliqueSlabs`.
         let reach = (self.upper - origin).max(origin - self.lower).max_element();
         let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
         let offset = origin * inverse;
