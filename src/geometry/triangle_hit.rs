@@ -19,7 +19,7 @@ use glam::{Vec4, Vec4Swizzles};
 
 use super::evaluation::Evaluation;
 use super::{BEHIND, Ray, Triangle};
-use crate::math::{DoubleDouble, UNIT_ROUNDOFF};
+use crate::math::{DoubleDouble, UNIT_ROUNDOFF, rounds_alike, widen};
 use crate::simd::{Scalar, Simd};
 
 /// What a triangle test found. `t` is finite.
@@ -172,8 +172,28 @@ impl TriangleRay {
             Some(Evaluation::Inside(hit)) => interval.contains(hit.t).then_some(hit),
             Some(Evaluation::Behind) => None,
             Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
+            Some(Evaluation::Near { hit, .. }) if let Some(hit) = self.hit_across::<P>(hit, corners) => {
+                interval.contains(hit.t).then_some(hit)
+            }
             _ => self.hit_slowly::<P>(&triangle(), interval),
         }
+    }
+
+    /// An [`Evaluation::Near`] of a triangle that lies across an axis, as floors and walls do: the plane gives `t`, two roundings off,
+    /// however near to 0. It is negative where the exact one is, so that [what ends behind the origin](BEHIND) is not hit.
+    #[cold]
+    #[inline(never)]
+    fn hit_across<P: PrecisionMode>(&self, hit: TriangleHit, corners: &Corners) -> Option<TriangleHit> {
+        for (&[a, b, c], axis) in corners.iter().zip(self.axes) {
+            let (origin, direction) = (widen(self.origin[axis & 3]), widen(self.direction[axis & 3]));
+            // By their bits: a host may read denormal ones as 0.
+            if a.to_bits() == b.to_bits() && b.to_bits() == c.to_bits() && direction != 0.0 {
+                let t = (widen(a) - origin) / direction;
+                let is_known = !P::IS_EXACT || t == 0.0 || rounds_alike(t, 2.0 * f64::EPSILON * t.abs());
+                return is_known.then_some(TriangleHit { t: t as f32, ..hit });
+            }
+        }
+        None
     }
 
     #[cold]
@@ -321,6 +341,9 @@ impl PrecisionMode for Accurate {
         let corners = ray.corners(triangle);
         let evaluation = match Evaluation::inside::<_, Self>(Scalar, ray, &corners, interval.t_min) {
             Some(Evaluation::Inside(hit)) => return Some(hit),
+            Some(Evaluation::Near { hit, .. }) if let Some(hit) = ray.hit_across::<Self>(hit, &corners) => {
+                return Some(hit);
+            }
             evaluation => evaluation.unwrap_or_else(|| Evaluation::of::<f64>(ray, triangle)),
         };
         let hit = match evaluation {
@@ -354,10 +377,12 @@ impl PrecisionMode for Exact {
         _y: &[f32; 3],
         interval: Interval,
     ) -> Option<TriangleHit> {
-        match Evaluation::inside::<_, Self>(Scalar, ray, &ray.corners(triangle), interval.t_min) {
+        let corners = ray.corners(triangle);
+        match Evaluation::inside::<_, Self>(Scalar, ray, &corners, interval.t_min) {
             Some(Evaluation::Inside(hit)) => Some(hit),
             Some(Evaluation::Outside | Evaluation::Behind) => None,
             Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
+            Some(Evaluation::Near { hit, .. }) if let Some(hit) = ray.hit_across::<Self>(hit, &corners) => Some(hit),
             _ => ray.hit_exactly(triangle),
         }
     }
@@ -552,6 +577,52 @@ mod tests {
             prop_assert!(is_near(hit.t, &t, 0.51 * ulp(hit.t)), "t is {:e}", hit.t);
             let uv_bound = 0.52 * f64::from(f32::EPSILON) / 2.0;
             prop_assert!(is_near(hit.u, &u, uv_bound) && is_near(hit.v, &v, uv_bound), "u {:e} v {:e}", hit.u, hit.v);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        /// Where rays leave floors and walls.
+        #[test]
+        fn hits_near_the_plane_of_a_triangle_across_an_axis_are_within_half_an_ulp(
+            vertices in [point(), point(), point()],
+            (axis, plane, steps) in (0..3usize, prop_oneof![Just(0.0), coordinate()], -3..3i32),
+            weights in (0.1f32..0.4, 0.1f32..0.4),
+            (distance, direction) in (prop_oneof![Just(f32::MIN_POSITIVE), Just(f32::from_bits(1))], point()),
+        ) {
+            let vertices = vertices.map(|mut vertex| {
+                vertex[axis] = plane;
+                vertex
+            });
+            let [a, b, c] = vertices.map(Vec3::from_array);
+            let mut origin = a + (b - a) * weights.0 + (c - a) * weights.1;
+            origin[axis] = match steps {
+                0 => plane,
+                1.. => (0..steps).fold(plane + distance, |at, _| at.next_up()),
+                _ => (steps..0).fold(plane - distance, |at, _| at.next_down()),
+            };
+            let direction = Vec3::from_array(direction);
+            let ray = Ray { origin, t_min: f32::NEG_INFINITY, direction, t_max: f32::INFINITY };
+            let triangle = Triangle::new(vertices, 0, 0);
+            prop_assume!(ray.is_valid() && direction[axis] != 0.0 && !triangle.has_zero_area());
+            let [t, u, v] = exact(&ray, &vertices).expect("not parallel");
+            let (zero, one) = (BigRational::from_integer(BigInt::from(0)), BigRational::from_integer(BigInt::from(1)));
+            prop_assume!(u > zero && v > zero && &u + &v < one);
+
+            let ray = TriangleRay::new(&ray);
+            let (accurate, exact) = (ray.hit::<Accurate>(&triangle, WHOLE_LINE), ray.hit::<Exact>(&triangle, WHOLE_LINE));
+            let exact = exact.expect("it is inside");
+            prop_assert!(is_near(exact.t, &t, 0.5 * ulp(exact.t)), "t is {:e}", exact.t);
+            // It may be within the band of an edge.
+            let Some(accurate) = accurate else { return Ok(()) };
+            prop_assert!(is_near(accurate.t, &t, 0.51 * ulp(accurate.t)), "t is {:e}", accurate.t);
+            let (x, y, _) = ray.shear(&ray.corners(&triangle));
+            let (any_negative, any_positive) = signs_beyond(&edge_functions(&x, &y), 0.0);
+            if any_negative != any_positive && edge_functions(&x, &y).iter().all(|edge| *edge != 0.0) {
+                let certain = ray.certain_hit::<Accurate, _>(Scalar, &ray.corners(&triangle), WHOLE_LINE, || triangle);
+                prop_assert_eq!(certain, Some(accurate));
+            }
         }
     }
 
