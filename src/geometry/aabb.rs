@@ -149,9 +149,11 @@ pub(crate) struct ObliqueSlabs {
 
 /// What ends, along any axis, where `(plane - origin) * inverse` is less than this has no hit at 0 or after: triangles by their test's
 /// rule (`triangle_hit.rs`), spheres by themselves. So its boxes need not be visited. No slack is needed: the difference has the
-/// right sign, and what is said of a box holds for all that is in it, because all is monotonic in the plane. A `t` that rounds to
-/// 0 may be negative by less.
-pub(crate) const BEHIND: f32 = -f32::MIN_POSITIVE;
+/// right sign, and what is said of a box holds for all that is in it, because all is monotonic in the plane.
+///
+/// Twice the least float, because a `t` that rounds to 0 may be negative by half of it: the product is off by another half, and three
+/// roundings, so a `t` beyond this rounds to a negative number.
+pub(crate) const BEHIND: f32 = -f32::from_bits(2);
 
 impl ObliqueSlabs {
     /// `corners` are those of the scene. `None` for other rays, and for those that are not valid.
