@@ -23,14 +23,27 @@ impl HitLanes {
     pub(crate) const EMPTY: Self =
         Self { origin: [[0.0; HITS]; 3], direction: [[0.0; HITS]; 3], vertices: [[[0.0; HITS]; 3]; 3] };
 
+    /// Of rays whose axes are in the same order.
+    #[inline(always)]
+    pub(crate) fn of_rays(origin: [Row; 3], direction: [Row; 3]) -> Self {
+        Self { origin, direction, ..Self::EMPTY }
+    }
+
     #[inline(always)]
     pub(crate) fn set(&mut self, lane: usize, ray: &TriangleRay, triangle: &Triangle) {
-        for axis in 0..3 {
-            let of_ray = ray.axes[axis] % 3;
-            self.origin[axis][lane % HITS] = ray.origin[of_ray];
-            self.direction[axis][lane % HITS] = ray.direction[of_ray];
+        for (axis, of_ray) in ray.axes.into_iter().enumerate() {
+            self.origin[axis][lane % HITS] = ray.origin[of_ray % 3];
+            self.direction[axis][lane % HITS] = ray.direction[of_ray % 3];
+        }
+        self.set_triangle(lane, ray.axes, triangle);
+    }
+
+    /// `axes` are those of the lane's ray.
+    #[inline(always)]
+    pub(crate) fn set_triangle(&mut self, lane: usize, axes: [usize; 3], triangle: &Triangle) {
+        for (axis, of_ray) in axes.into_iter().enumerate() {
             for corner in 0..3 {
-                self.vertices[axis][corner][lane % HITS] = triangle.axes[of_ray][corner];
+                self.vertices[axis][corner][lane % HITS] = triangle.axes[of_ray % 3][corner];
             }
         }
     }

@@ -4,9 +4,9 @@
 use std::marker::PhantomData;
 
 use super::Vectorized;
+use super::batch::Batch;
 use super::leaf_test::{LeafTest, TriangleTest};
 use super::node::Child;
-use super::wavefront::Wavefront;
 use crate::accel::build_context::slices;
 use crate::accel::reference::{PrimitiveSource, Reference, TriangleSource};
 use crate::accel::{BuildContext, BuildFailure, ClosestHit, Primitive, Query, query_one_by_one};
@@ -276,7 +276,7 @@ impl LeafForm for ByAxis {
         R: 'r,
         T: 'r,
     {
-        accel.simd.vectorize_batch(Wavefront::<Q, P, _, _, _, _>::new(accel.bvh, next_run, answer));
+        accel.simd.vectorize_batch(Batch::<Q, P, _, _, _, _>::new(accel.bvh, next_run, answer));
     }
 }
 

@@ -4,6 +4,7 @@
 //! Source: Wald, Benthin, Boulos 2008, "Getting rid of packets: efficient SIMD single-ray traversal using
 //! multi-branching BVHs".
 
+mod batch;
 mod box_test;
 mod collapse;
 mod collect;

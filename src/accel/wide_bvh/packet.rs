@@ -7,13 +7,13 @@
 use std::marker::PhantomData;
 
 use arrayvec::ArrayVec;
-use glam::Vec3A;
+use glam::{Vec3, Vec3A};
 
 use super::WideBvh;
 use super::leaf_test::Corners;
 use super::leaves::{Leaf, LeafTriangles};
 use super::node::{Child, WideNode};
-use super::wavefront::{Signs, is_fit, shear, spans, weights};
+use super::wavefront::{LEAST_DIRECTION, MOST_REACH, Signs, is_fit, shear, spans, weights};
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, settled};
@@ -22,7 +22,7 @@ use crate::math::gamma;
 use crate::simd::{LANES, Simd, SimdKernel, prefetch};
 
 /// How many rays make a packet.
-pub(super) const PACKET: usize = 64;
+pub(super) const PACKET: usize = 16;
 const GROUPS: usize = PACKET / LANES;
 const _: () = assert!(HITS == LANES);
 
@@ -33,69 +33,138 @@ const MOST_DISTANCE: f32 = 1.0 / 64.0;
 
 /// A packet whose leaves are each met by fewer rays than this on average is given up after so many leaves: rays one by
 /// one test a leaf's triangles at once, too.
-const LEAST_RAYS: u32 = 6;
+const LEAST_RAYS: u32 = 3;
 const TRIAL_LEAVES: u32 = 8;
 
-/// What the rays of a packet lie between.
-#[derive(Clone, Copy)]
-pub(super) struct Spread {
-    origin: [Vec3A; 2],
-    direction: [Vec3A; 2],
+/// One value a ray.
+type Row = [f32; PACKET];
+
+/// Rays that go the same way, value by value, and what they lie between.
+pub(super) struct Coherent {
+    origin: [Row; 3],
+    direction: [Row; 3],
+    t_min: Row,
+    t_max: Row,
+    /// The least and the greatest along each axis.
+    origin_ends: [[f32; 2]; 3],
+    direction_ends: [[f32; 2]; 3],
     signs: u32,
     axes: [usize; 3],
 }
 
-impl Spread {
-    /// Of rays that go the same way: the signs and the largest component agree, and little else differs.
-    pub(super) fn of_packet<R>(rays: &[R; PACKET], bounds: &Aabb) -> Option<Self>
+impl Coherent {
+    /// If the signs and the largest component agree, and little else differs.
+    #[inline(always)]
+    pub(super) fn of<S: Simd, R>(simd: S, rays: &[R; PACKET], bounds: &Aabb) -> Option<Self>
     where
         for<'r> &'r R: Into<Ray>,
     {
-        let first: Ray = (&rays[0]).into();
-        if !is_fit(&first) {
+        let (first, last): (Ray, Ray) = ((&rays[0]).into(), (&rays[PACKET - 1]).into());
+        let direction = Vec3A::from(first.direction);
+        let signs = direction.is_negative_bitmask();
+        let most_across = MOST_SPREAD * direction.abs().max_element();
+        // The two settle most refusals.
+        let last = Vec3A::from(last.direction);
+        if last.is_negative_bitmask() != signs
+            || (last - direction).abs().max_element() > most_across
+            || !is_fit(&first)
+        {
             return None;
         }
-        let signs = Vec3A::from(first.direction).is_negative_bitmask();
-        let extent = (bounds.upper - bounds.lower).max_element();
-        let mut spread = Self {
-            origin: [Vec3A::INFINITY, Vec3A::NEG_INFINITY],
-            direction: [Vec3A::INFINITY, Vec3A::NEG_INFINITY],
+        let row = [0.0; PACKET];
+        let mut coherent = Self {
+            origin: [row; 3],
+            direction: [row; 3],
+            t_min: row,
+            t_max: row,
+            origin_ends: [[0.0; 2]; 3],
+            direction_ends: [[0.0; 2]; 3],
             signs,
             axes: TriangleRay::new(&first).axes,
         };
-        // The last first: it settles most refusals.
-        for index in [PACKET - 1].into_iter().chain(0..PACKET) {
-            let ray: Ray = (&rays[index]).into();
-            let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
-            let lengths = direction.abs();
-            let is_like = is_fit(&ray)
-                && direction.is_negative_bitmask() == signs
-                && lengths.max_element() == lengths[spread.axes[2]];
-            if !is_like {
-                return None;
+        for (index, ray) in rays.iter().enumerate() {
+            let ray: Ray = ray.into();
+            for axis in 0..3 {
+                coherent.origin[axis][index] = ray.origin[axis];
+                coherent.direction[axis][index] = ray.direction[axis];
             }
-            spread.origin = [spread.origin[0].min(origin), spread.origin[1].max(origin)];
-            spread.direction = [spread.direction[0].min(direction), spread.direction[1].max(direction)];
-            if index % 8 == 0 || index == PACKET - 1 {
-                let across = (spread.direction[1] - spread.direction[0]).max_element();
-                let apart = (spread.origin[1] - spread.origin[0]).max_element();
-                if across > MOST_SPREAD * lengths.max_element() || apart > MOST_DISTANCE * extent {
-                    return None;
-                }
+            coherent.t_min[index] = ray.t_min;
+            coherent.t_max[index] = ray.t_max;
+        }
+        if !coherent.are_alike(simd) {
+            return None;
+        }
+        for axis in 0..3 {
+            coherent.origin_ends[axis] = ends(simd, &coherent.origin[axis]);
+            coherent.direction_ends[axis] = ends(simd, &coherent.direction[axis]);
+        }
+        let most_apart = MOST_DISTANCE * (bounds.upper - bounds.lower).max_element();
+        let widest = |[x, y, z]: &[[f32; 2]; 3]| (x[1] - x[0]).max(y[1] - y[0]).max(z[1] - z[0]);
+        let is_narrow = widest(&coherent.direction_ends) <= most_across && widest(&coherent.origin_ends) <= most_apart;
+        is_narrow.then_some(coherent)
+    }
+
+    /// Whether all are [fit](is_fit), go the same way along each axis, and have the axes that each would have alone.
+    #[inline(always)]
+    fn are_alike<S: Simd>(&self, simd: S) -> bool {
+        const ALL: u32 = 0xFF;
+        let (zero, most, least) = (simd.splat(0.0), simd.splat(MOST_REACH), simd.splat(LEAST_DIRECTION));
+        let longest = self.axes[2];
+        let mut alike = ALL;
+        for group in 0..GROUPS {
+            let (t_min, t_max) = (load(simd, &self.t_min, group), load(simd, &self.t_max, group));
+            alike &= simd.less_or_equal(zero, t_min) & simd.less_or_equal(t_min, t_max);
+            let length = simd.abs(load(simd, &self.direction[longest % 3], group));
+            for axis in 0..3 {
+                let origin = simd.abs(load(simd, &self.origin[axis], group));
+                let direction = load(simd, &self.direction[axis], group);
+                let is_negative = self.signs >> axis & 1 == 1;
+                let along = simd.abs(direction);
+                alike &= simd.less(origin, most) & simd.less(along, most) & simd.less(least, along);
+                alike &= if is_negative { simd.less(direction, zero) } else { simd.less(zero, direction) };
+                // Of equal components a ray takes the first.
+                alike &= if axis < longest { simd.less(along, length) } else { simd.less_or_equal(along, length) };
             }
         }
-        Some(spread)
+        alike == ALL
     }
 }
 
-/// One value a ray.
-type Row = [f32; PACKET];
+/// A group's values.
+#[inline(always)]
+fn load<S: Simd>(simd: S, row: &Row, group: usize) -> S::F32x8 {
+    let at = group % GROUPS * LANES;
+    simd.load(row[at..].first_chunk().expect("a whole group"))
+}
+
+#[inline(always)]
+fn store<S: Simd>(simd: S, row: &mut Row, group: usize, values: S::F32x8) {
+    let at = group % GROUPS * LANES;
+    row[at..][..LANES].copy_from_slice(&simd.store(values));
+}
+
+/// The least and the greatest.
+#[inline(always)]
+fn ends<S: Simd>(simd: S, row: &Row) -> [f32; 2] {
+    let (mut least, mut most) = (load(simd, row, 0), load(simd, row, 0));
+    for group in 1..GROUPS {
+        let values = load(simd, row, group);
+        (least, most) = (simd.min(values, least), simd.max(values, most));
+    }
+    let (least, most) = (simd.store(least), simd.store(most));
+    let mut ends = [least[0], most[0]];
+    for lane in 1..LANES {
+        ends[0] = if least[lane] < ends[0] { least[lane] } else { ends[0] };
+        ends[1] = if most[lane] > ends[1] { most[lane] } else { ends[1] };
+    }
+    ends
+}
 
 /// A packet as a kernel.
 pub(super) struct Packet<'b, 'p, Q, P, R, T, A> {
     bvh: &'b WideBvh,
     rays: &'p [R; PACKET],
-    spread: &'p Spread,
+    coherent: &'p Coherent,
     places: &'p mut [T],
     answer: &'p A,
     choices: PhantomData<(Q, P)>,
@@ -105,11 +174,11 @@ impl<'b, 'p, Q, P, R, T, A> Packet<'b, 'p, Q, P, R, T, A> {
     pub(super) fn new(
         bvh: &'b WideBvh,
         rays: &'p [R; PACKET],
-        spread: &'p Spread,
+        coherent: &'p Coherent,
         places: &'p mut [T],
         answer: &'p A,
     ) -> Self {
-        Self { bvh, rays, spread, places, answer, choices: PhantomData }
+        Self { bvh, rays, coherent, places, answer, choices: PhantomData }
     }
 }
 
@@ -124,16 +193,14 @@ struct Pending {
 
 type Stack = ArrayVec<Pending, { MOST_LEVELS * (LANES - 1) }>;
 
-/// The rays, value by value.
-struct Rays {
+/// The rays on their way.
+struct Rays<'p> {
+    coherent: &'p Coherent,
     inverse: [Row; 3],
     near_offset: [Row; 3],
     far_offset: [Row; 3],
-    /// In the order of the packet's axes, as are the next.
-    origin: [Row; 3],
+    /// In the order of the packet's axes.
     shear: [Row; 2],
-    inverse_depth: Row,
-    t_min: Row,
     /// The best hit's `t` lies between the two. Without a hit both are `t_max`; `-inf` where nothing is left to find.
     nearest: Row,
     farthest: Row,
@@ -167,10 +234,13 @@ where
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
-        let Self { bvh, rays: sources, spread, places, answer, .. } = self;
+        let Self { bvh, rays: sources, coherent, places, answer, .. } = self;
         let mut best: [ClosestHit; PACKET] = [ClosestHit::none(&(&sources[0]).into()); PACKET];
-        let mut rays = Rays::new::<P, R>(bvh, sources, spread, &mut best);
-        let beam = Beam::new(simd, bvh, spread, &rays);
+        for (best, t_max) in best.iter_mut().zip(&coherent.t_max) {
+            best.t = *t_max;
+        }
+        let mut rays = Rays::new::<P, S>(simd, bvh, coherent);
+        let beam = Beam::new(simd, bvh, coherent);
         let mut t_max = rays.farthest_of_all(simd);
         let mut stack = Stack::new_const();
         let (mut leaf_count, mut ray_count) = (0, 0);
@@ -186,7 +256,7 @@ where
                 }
                 for group in 0..GROUPS {
                     let active = match planes {
-                        Some(node) => rays.meet(simd, group, node, current.slot as usize % LANES, spread.signs),
+                        Some(node) => rays.meet(simd, group, node, current.slot as usize % LANES),
                         None => 0xFF,
                     };
                     if active != 0 {
@@ -197,7 +267,6 @@ where
                             active,
                             &leaf,
                             current.child,
-                            spread,
                             bvh,
                             sources,
                             &mut best,
@@ -235,7 +304,7 @@ where
         }
         if !Q::FIRST_HIT_ENDS && P::HAS_LANES {
             for group in 0..GROUPS {
-                rays.settle_group::<P, R>(group, bvh, sources, &mut best);
+                rays.settle_group::<P>(group, bvh, &mut best);
             }
         }
         for (index, place) in places.iter_mut().enumerate().take(PACKET) {
@@ -263,69 +332,51 @@ fn push(stack: &mut Stack, bottom: usize, pending: Pending) {
     stack[at] = pending;
 }
 
-impl Rays {
+impl<'p> Rays<'p> {
     #[inline(always)]
-    fn new<P: PrecisionMode, R>(
-        bvh: &WideBvh,
-        sources: &[R; PACKET],
-        spread: &Spread,
-        best: &mut [ClosestHit; PACKET],
-    ) -> Self
-    where
-        for<'r> &'r R: Into<Ray>,
-    {
+    fn new<P: PrecisionMode, S: Simd>(simd: S, bvh: &WideBvh, coherent: &'p Coherent) -> Self {
         let row = [0.0; PACKET];
         let mut rays = Self {
+            coherent,
             inverse: [row; 3],
             near_offset: [row; 3],
             far_offset: [row; 3],
-            origin: [row; 3],
             shear: [row; 2],
-            inverse_depth: row,
-            t_min: row,
-            nearest: row,
-            farthest: row,
+            nearest: coherent.t_max,
+            farthest: coherent.t_max,
             pending: [None; PACKET],
             edge_slack: 0.0,
         };
-        let (lower, upper) = (Vec3A::from(bvh.bounds.lower), Vec3A::from(bvh.bounds.upper));
-        let [kx, ky, kz] = spread.axes;
-        for (index, source) in sources.iter().enumerate() {
-            let ray: Ray = source.into();
-            let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
-            let inverse = Vec3A::ONE / direction;
+        let [kx, ky, kz] = coherent.axes;
+        for group in 0..GROUPS {
             // As `ObliqueSlabs`.
-            let reach = (upper - origin).max(origin - lower).max_element();
-            if P::IS_EXACT {
-                rays.edge_slack = rays.edge_slack.max(edge_slack(reach));
-            }
-            let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
-            let offset = origin * inverse;
-            let slack = inverse.abs() * slack_distance + offset.abs() * gamma(4);
-            let (near, far) = (offset + slack, offset - slack);
+            let mut reach = simd.splat(0.0);
             for axis in 0..3 {
-                rays.inverse[axis][index] = inverse[axis];
-                rays.near_offset[axis][index] = near[axis];
-                rays.far_offset[axis][index] = far[axis];
+                let origin = load(simd, &coherent.origin[axis], group);
+                let (lower, upper) = (simd.splat(bvh.bounds.lower[axis]), simd.splat(bvh.bounds.upper[axis]));
+                reach = simd.max(reach, simd.max(simd.sub(upper, origin), simd.sub(origin, lower)));
             }
-            rays.origin[0][index] = origin[kx];
-            rays.origin[1][index] = origin[ky];
-            rays.origin[2][index] = origin[kz];
-            rays.shear[0][index] = direction[kx] / direction[kz];
-            rays.shear[1][index] = direction[ky] / direction[kz];
-            rays.inverse_depth[index] = inverse[kz];
-            rays.t_min[index] = ray.t_min;
-            rays.nearest[index] = ray.t_max;
-            rays.farthest[index] = ray.t_max;
-            best[index] = ClosestHit::none(&ray);
+            if P::IS_EXACT {
+                for reach in simd.store(reach) {
+                    rays.edge_slack = rays.edge_slack.max(edge_slack(reach));
+                }
+            }
+            let slack_distance = simd.add(simd.mul(simd.splat(gamma(24)), reach), simd.splat(f32::MIN_POSITIVE));
+            for axis in 0..3 {
+                let inverse = simd.div(simd.splat(1.0), load(simd, &coherent.direction[axis], group));
+                let offset = simd.mul(load(simd, &coherent.origin[axis], group), inverse);
+                let slack = simd
+                    .add(simd.mul(simd.abs(inverse), slack_distance), simd.mul(simd.abs(offset), simd.splat(gamma(4))));
+                store(simd, &mut rays.inverse[axis], group, inverse);
+                store(simd, &mut rays.near_offset[axis], group, simd.add(offset, slack));
+                store(simd, &mut rays.far_offset[axis], group, simd.sub(offset, slack));
+            }
+            let depth = load(simd, &coherent.direction[kz % 3], group);
+            for (row, axis) in rays.shear.iter_mut().zip([kx, ky]) {
+                store(simd, row, group, simd.div(load(simd, &coherent.direction[axis % 3], group), depth));
+            }
         }
         rays
-    }
-
-    #[inline(always)]
-    fn load<S: Simd>(simd: S, row: &Row, group: usize) -> S::F32x8 {
-        let at = group % GROUPS * LANES;
-        simd.load(row[at..].first_chunk().expect("a whole group"))
     }
 
     /// No ray still looks beyond this.
@@ -333,40 +384,32 @@ impl Rays {
     fn farthest_of_all<S: Simd>(&self, simd: S) -> f32 {
         let mut most = simd.splat(f32::NEG_INFINITY);
         for group in 0..GROUPS {
-            most = simd.max(Self::load(simd, &self.farthest, group), most);
+            most = simd.max(load(simd, &self.farthest, group), most);
         }
         simd.store(most).into_iter().fold(f32::NEG_INFINITY, |a, b| if a > b { a } else { b })
     }
 
     /// Which rays of a group meet a slot's box.
     #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, group: usize, node: &WideNode, slot: usize, signs: u32) -> u32 {
-        let (near_x, far_x) = self.slab(simd, group, node, slot, signs, 0);
-        let (near_y, far_y) = self.slab(simd, group, node, slot, signs, 1);
-        let (near_z, far_z) = self.slab(simd, group, node, slot, signs, 2);
-        let t_min = Self::load(simd, &self.t_min, group);
-        let farthest = Self::load(simd, &self.farthest, group);
+    fn meet<S: Simd>(&self, simd: S, group: usize, node: &WideNode, slot: usize) -> u32 {
+        let (near_x, far_x) = self.slab(simd, group, node, slot, 0);
+        let (near_y, far_y) = self.slab(simd, group, node, slot, 1);
+        let (near_z, far_z) = self.slab(simd, group, node, slot, 2);
+        let t_min = load(simd, &self.coherent.t_min, group);
+        let farthest = load(simd, &self.farthest, group);
         let enter = simd.max(near_x, simd.max(near_y, simd.max(near_z, t_min)));
         let leave = simd.min(far_x, simd.min(far_y, simd.min(far_z, farthest)));
         simd.less_or_equal(enter, leave)
     }
 
     #[inline(always)]
-    fn slab<S: Simd>(
-        &self,
-        simd: S,
-        group: usize,
-        node: &WideNode,
-        slot: usize,
-        signs: u32,
-        axis: usize,
-    ) -> (S::F32x8, S::F32x8) {
-        let side = (signs >> axis & 1) as usize;
+    fn slab<S: Simd>(&self, simd: S, group: usize, node: &WideNode, slot: usize, axis: usize) -> (S::F32x8, S::F32x8) {
+        let side = (self.coherent.signs >> axis & 1) as usize;
         let (near, far) = (simd.splat(node.planes[axis][side][slot]), simd.splat(node.planes[axis][side ^ 1][slot]));
-        let inverse = Self::load(simd, &self.inverse[axis], group);
+        let inverse = load(simd, &self.inverse[axis], group);
         (
-            simd.mul_sub(near, inverse, Self::load(simd, &self.near_offset[axis], group)),
-            simd.mul_sub(far, inverse, Self::load(simd, &self.far_offset[axis], group)),
+            simd.mul_sub(near, inverse, load(simd, &self.near_offset[axis], group)),
+            simd.mul_sub(far, inverse, load(simd, &self.far_offset[axis], group)),
         )
     }
 
@@ -380,7 +423,6 @@ impl Rays {
         active: u32,
         leaf: &Leaf<'_>,
         child: Child,
-        spread: &Spread,
         bvh: &WideBvh,
         sources: &[R; PACKET],
         best: &mut [ClosestHit; PACKET],
@@ -388,11 +430,12 @@ impl Rays {
     where
         for<'r> &'r R: Into<Ray>,
     {
-        let [kx, ky, kz] = spread.axes;
-        let origin = [0, 1, 2].map(|axis| Self::load(simd, &self.origin[axis], group));
-        let (shear_x, shear_y) = (Self::load(simd, &self.shear[0], group), Self::load(simd, &self.shear[1], group));
-        let inverse_depth = Self::load(simd, &self.inverse_depth, group);
-        let t_min = Self::load(simd, &self.t_min, group);
+        let [kx, ky, kz] = self.coherent.axes;
+        let origin = |axis: usize| load(simd, &self.coherent.origin[axis % 3], group);
+        let origin = [origin(kx), origin(ky), origin(kz)];
+        let (shear_x, shear_y) = (load(simd, &self.shear[0], group), load(simd, &self.shear[1], group));
+        let inverse_depth = load(simd, &self.inverse[kz % 3], group);
+        let t_min = load(simd, &self.coherent.t_min, group);
         let mut is_changed = false;
         for lane in 0..child.triangles().1 {
             let z = from_origin(simd, leaf, kz, lane, origin[2]);
@@ -406,7 +449,7 @@ impl Rays {
                 continue;
             }
             let spans = spans(simd, &sheared, &weights, signs, inverse_depth);
-            let mut left = candidates & spans.within(simd, t_min, Self::load(simd, &self.farthest, group));
+            let mut left = candidates & spans.within(simd, t_min, load(simd, &self.farthest, group));
             let (from, to) = (simd.store(spans.from), simd.store(spans.to));
             is_changed |= left != 0;
             while left != 0 {
@@ -415,13 +458,13 @@ impl Rays {
                 let index = (group * LANES + of_group) % PACKET;
                 let (from, to) = (from[of_group], to[of_group]);
                 let is_certain = spans.certain >> of_group & 1 == 1;
-                if is_certain && from >= self.t_min[index] && to < self.nearest[index] {
+                if is_certain && from >= self.coherent.t_min[index] && to < self.nearest[index] {
                     self.pending[index] = Some((lane as u32, child));
                     (self.nearest[index], self.farthest[index]) = (from, to);
                 } else {
                     self.settle::<P, R>(index, bvh, &sources[index], &mut best[index]);
                     let triangle = leaf.triangle(lane);
-                    let interval = Interval { t_min: self.t_min[index], t_max: best[index].t };
+                    let interval = Interval { t_min: self.coherent.t_min[index], t_max: best[index].t };
                     let ray = TriangleRay::new(&(&sources[index]).into());
                     if let Some(hit) = ray.hit::<P>(&triangle, interval) {
                         best[index].improve::<P>(&ray, &hit, &triangle);
@@ -438,21 +481,21 @@ impl Rays {
 
     /// As [`Rays::settle`] for a group, as far as one evaluation is enough.
     #[inline(always)]
-    fn settle_group<P: PrecisionMode, R>(
-        &mut self,
-        group: usize,
-        bvh: &WideBvh,
-        sources: &[R; PACKET],
-        best: &mut [ClosestHit; PACKET],
-    ) where
-        for<'r> &'r R: Into<Ray>,
-    {
-        let mut lanes = HitLanes::EMPTY;
+    fn settle_group<P: PrecisionMode>(&mut self, group: usize, bvh: &WideBvh, best: &mut [ClosestHit; PACKET]) {
+        let axes = self.coherent.axes;
+        let first = group % GROUPS * LANES;
+        let of_group = |row: &Row| *row[first..].first_chunk().expect("a whole group");
+        let Coherent { origin, direction, .. } = self.coherent;
+        let [kx, ky, kz] = axes.map(|axis| axis % 3);
+        let mut lanes = HitLanes::of_rays(
+            [of_group(&origin[kx]), of_group(&origin[ky]), of_group(&origin[kz])],
+            [of_group(&direction[kx]), of_group(&direction[ky]), of_group(&direction[kz])],
+        );
         for of_group in 0..LANES {
             let index = (group * LANES + of_group) % PACKET;
             if let Some((lane, child)) = self.pending[index] {
                 let triangle = bvh.leaves.leaf(child.triangles()).triangle(lane as usize % LANES);
-                lanes.set(of_group, &TriangleRay::new(&(&sources[index]).into()), &triangle);
+                lanes.set_triangle(of_group, axes, &triangle);
                 best[index].primitive = triangle;
             }
         }
@@ -476,7 +519,7 @@ impl Rays {
     {
         let Some((lane, child)) = self.pending[index].take() else { return };
         let triangle = bvh.leaves.leaf(child.triangles()).triangle(lane as usize % LANES);
-        let interval = Interval { t_min: self.t_min[index], t_max: f32::INFINITY };
+        let interval = Interval { t_min: self.coherent.t_min[index], t_max: f32::INFINITY };
         if let Some(hit) = TriangleRay::new(&source.into()).hit::<P>(&triangle, interval) {
             *best = ClosestHit { t: hit.t, u: hit.u, v: hit.v, primitive: triangle };
         }
@@ -491,20 +534,21 @@ fn from_origin<S: Simd>(simd: S, leaf: &Leaf<'_>, axis: usize, lane: usize, orig
 
 impl<S: Simd> Beam<S> {
     #[inline(always)]
-    fn new(simd: S, bvh: &WideBvh, spread: &Spread, rays: &Rays) -> Self {
-        let [origin_lower, origin_upper] = spread.origin;
-        let reach = bvh.bounds.reach_from(origin_lower.into()).max(bvh.bounds.reach_from(origin_upper.into()));
+    fn new(simd: S, bvh: &WideBvh, coherent: &Coherent) -> Self {
+        let [x, y, z] = coherent.origin_ends;
+        let (lower, upper) = (Vec3::new(x[0], y[0], z[0]), Vec3::new(x[1], y[1], z[1]));
+        let reach = bvh.bounds.reach_from(lower).max(bvh.bounds.reach_from(upper));
         let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
-        let t_min = rays.t_min.iter().fold(f32::INFINITY, |a, &b| a.min(b));
-        let side = |axis: usize| (spread.signs >> axis & 1) as usize;
+        let [t_min, _] = ends(simd, &coherent.t_min);
+        let side = |axis: usize| (coherent.signs >> axis & 1) as usize;
         let sign = |axis: usize| if side(axis) == 1 { -1.0 } else { 1.0 };
         let origin = |axis: usize| {
-            let (a, b) = (sign(axis) * origin_lower[axis], sign(axis) * origin_upper[axis]);
+            let [a, b] = coherent.origin_ends[axis].map(|end| sign(axis) * end);
             [simd.splat(a.max(b)), simd.splat(a.min(b))]
         };
         // The inverse of a rounded direction is monotonic, so its ends are those of the directions.
         let ends = |axis: usize| {
-            let (a, b) = ((1.0 / spread.direction[0][axis]).abs(), (1.0 / spread.direction[1][axis]).abs());
+            let [a, b] = coherent.direction_ends[axis].map(|end| (1.0 / end).abs());
             (a.min(b), a.max(b))
         };
         let inverse = |axis: usize| [simd.splat(ends(axis).0), simd.splat(ends(axis).1)];

@@ -7,36 +7,26 @@
 //! Source for the lists: Wald, Benthin, Boulos 2008 (see [`super`]) for streams; Fuetterer, Lojewski, Pfreundt, Ebert
 //! 2015, "Efficient ray tracing kernels for modern CPU architectures", for the order of hits as keys.
 
-use std::marker::PhantomData;
-use std::time::Instant;
-
 use glam::Vec3A;
 
 use super::WideBvh;
+use super::batch::Source;
 use super::leaf_test::{Corners, size_across};
 use super::leaves::{Leaf, LeafRows, LeafTriangles};
 use super::node::{Child, WideNode};
-use super::packet::{PACKET, Packet, Spread};
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{
-    Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, least_doubt, settled,
-};
+use crate::geometry::{HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, least_doubt, settled};
 use crate::math::{UNIT_ROUNDOFF, gamma};
-use crate::simd::{LANES, Simd, SimdKernel};
+use crate::simd::{LANES, Simd};
 
 /// How many rays are in flight. With 16 or 64 a batch of random rays among 871 thousand triangles takes as long or up
 /// to 5 % longer.
-const IN_FLIGHT: usize = 32;
-
-/// The fewest rays of a run for which the wavefront's memory is asked for.
-const LEAST_RAYS: usize = 2 * IN_FLIGHT;
-
-/// Trees smaller than this are in a cache where single rays do not wait long: they take as long alone, or less (trees
-/// of 3 to 14 MB; at 43 MB the wavefront saves a fifth to a fourth).
-const LEAST_BYTES: usize = 24 << 20;
+pub(super) const IN_FLIGHT: usize = 32;
 
 /// Coordinates below this: products of three differences do not overflow `f32`.
 pub(super) const MOST_REACH: f32 = (1u64 << 39) as f32;
+/// Components above this: their inverses are below [`MOST_REACH`].
+pub(super) const LEAST_DIRECTION: f32 = 1.0 / MOST_REACH;
 
 /// The lists.
 const NODE: usize = 0;
@@ -45,121 +35,6 @@ const POP: usize = 2;
 /// Those whose hit is known, but not evaluated.
 const EVALUATE: usize = 3;
 const LISTS: usize = 4;
-
-/// Where rays come from: runs of rays with a place for each answer.
-struct Source<'a, R, T, N> {
-    rays: &'a [R],
-    answers: &'a mut [T],
-    /// How many rays are left of those that were refused as packets.
-    refused: usize,
-    /// How many rays to pass by after the next packet that is given up, or does not pay.
-    patience: usize,
-    /// Whether the refused rays go the same way all the same: such are faster one by one than in flight.
-    are_coherent: bool,
-    others: Pace,
-    next_run: N,
-}
-
-/// How long rays take that no packet answers.
-struct Pace {
-    since: Instant,
-    rays: usize,
-    seconds_per_ray: f64,
-}
-
-impl<'a, R, T, N> Source<'a, R, T, N>
-where
-    for<'r> &'r R: Into<Ray>,
-    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
-{
-    /// Goes on to the next run; false if there is none.
-    #[inline(always)]
-    fn next_run(&mut self) -> bool {
-        let run = (self.next_run)();
-        let is_there = run.is_some();
-        (self.rays, self.answers) = run.unwrap_or_default();
-        is_there
-    }
-
-    /// Whether as many rays are left of this run.
-    #[inline(always)]
-    fn has_at_least(&self, count: usize) -> bool {
-        self.rays.len() >= count
-    }
-
-    #[inline(always)]
-    fn next(&mut self) -> Option<(&'a R, &'a mut T)> {
-        loop {
-            if let Some((ray, rays)) = self.rays.split_first()
-                && let Some((answer, answers)) = std::mem::take(&mut self.answers).split_first_mut()
-            {
-                (self.rays, self.answers) = (rays, answers);
-                self.refused = self.refused.saturating_sub(1);
-                self.others.rays += 1;
-                return Some((ray, answer));
-            }
-            if !self.next_run() {
-                return None;
-            }
-        }
-    }
-
-    /// The next rays if they look like a packet, and their places. Looks once at each group, and first at how long
-    /// some rays take without.
-    #[inline(always)]
-    fn next_packet(&mut self, bounds: &Aabb) -> Option<(&'a [R; PACKET], Spread, &mut [T])> {
-        if self.refused != 0 {
-            return None;
-        }
-        if self.others.rays != 0 {
-            self.others.seconds_per_ray = self.others.since.elapsed().as_secs_f64() / self.others.rays as f64;
-            self.others.rays = 0;
-        }
-        if self.rays.is_empty() && !self.next_run() {
-            return None;
-        }
-        (self.refused, self.are_coherent) = (PACKET, false);
-        let rays = self.rays.first_chunk::<PACKET>()?;
-        let spread = Spread::of_packet(rays, bounds)?;
-        self.refused = 0;
-        Some((rays, spread, &mut self.answers[..PACKET]))
-    }
-
-    /// After an attempt at a packet: goes past it if it was answered. If it was not, or took longer than its rays
-    /// would have alone, it leaves ever more of the rays that follow to the others.
-    #[inline(always)]
-    fn end_packet(&mut self, is_answered: bool, start: Instant) {
-        let end = Instant::now();
-        if is_answered {
-            self.rays = &self.rays[PACKET..];
-            self.answers = &mut std::mem::take(&mut self.answers)[PACKET..];
-        }
-        let seconds_per_ray = (end - start).as_secs_f64() / PACKET as f64;
-        if is_answered && seconds_per_ray < self.others.seconds_per_ray {
-            (self.refused, self.patience) = (0, PACKET);
-        } else {
-            self.refused = self.patience;
-            self.patience = (2 * self.patience).min(64 * PACKET);
-        }
-        self.are_coherent = true;
-        (self.others.since, self.others.rays) = (end, 0);
-    }
-
-    /// Answers the next rays in packets, as long as those pay.
-    #[inline(always)]
-    fn answer_packets<Q: Query, P: PrecisionMode, S: Simd>(
-        &mut self,
-        simd: S,
-        bvh: &WideBvh,
-        answer: &impl Fn(&mut T, Option<ClosestHit>),
-    ) {
-        while let Some((rays, spread, places)) = self.next_packet(&bvh.bounds) {
-            let start = Instant::now();
-            let is_answered = simd.vectorize_batch(Packet::<Q, P, _, _, _>::new(bvh, rays, &spread, places, answer));
-            self.end_packet(is_answered, start);
-        }
-    }
-}
 
 /// What a box test needs of a ray, and where the ray is. 64 bytes, one cache line.
 #[derive(Clone, Copy)]
@@ -261,7 +136,7 @@ const MOST_LEVELS: usize = (STACK - LANES) / (LANES - 1);
 /// The children that wait for a ray, and where it enters each; the first is at [`LANES`], so that below the last there
 /// always is a whole register. Just below the first is [`Child::NONE`], which is never culled.
 #[derive(Clone, Copy)]
-struct Stack {
+pub(super) struct Stack {
     keys: [f32; STACK + LANES],
     children: [u32; STACK + LANES],
 }
@@ -292,36 +167,11 @@ impl Stack {
     }
 }
 
-/// The rays of one worker, as a kernel.
-pub(super) struct Wavefront<'b, 'a, Q, P, R, T, N, A> {
+/// The rays of a stretch, all but those that packets answer.
+pub(super) struct Flight<'b, 'a, 's, R, T, N, A> {
     bvh: &'b WideBvh,
-    source: Source<'a, R, T, N>,
-    answer: A,
-    choices: PhantomData<(Q, P)>,
-}
-
-impl<'b, 'a, Q, P, R, T, N, A> Wavefront<'b, 'a, Q, P, R, T, N, A> {
-    pub(super) fn new(bvh: &'b WideBvh, next_run: N, answer: A) -> Self {
-        // The first rays show how long they take without packets.
-        let others = Pace { since: Instant::now(), rays: 0, seconds_per_ray: 0.0 };
-        let source = Source {
-            rays: &[],
-            answers: &mut [],
-            refused: PACKET,
-            patience: PACKET,
-            are_coherent: false,
-            others,
-            next_run,
-        };
-        Self { bvh, source, answer, choices: PhantomData }
-    }
-}
-
-/// The kernel's state.
-struct Flight<'b, 'a, 's, R, T, N, A> {
-    bvh: &'b WideBvh,
-    source: Source<'a, R, T, N>,
-    answer: A,
+    source: &'s mut Source<'a, R, T, N>,
+    answer: &'s A,
     stacks: &'s mut [Stack; IN_FLIGHT],
     boxes: [BoxRay; IN_FLIGHT],
     leaves: [LeafRay; IN_FLIGHT],
@@ -329,61 +179,53 @@ struct Flight<'b, 'a, 's, R, T, N, A> {
     lists: [List; LISTS],
     lower: Vec3A,
     upper: Vec3A,
-    /// Whether rays may be taken for the wavefront at all.
-    is_in_range: bool,
 }
 
 /// Whether the wavefront takes a ray, which then is valid: its numbers far from overflow and underflow, its interval
 /// without negative numbers, so that distances are in the order of their bits. A NaN makes it false.
 #[inline(always)]
 pub(super) fn is_fit(ray: &Ray) -> bool {
-    const LEAST: f32 = 1.0 / MOST_REACH;
     let (origin, direction) = (Vec3A::from(ray.origin).abs(), Vec3A::from(ray.direction).abs());
     let in_range = origin.cmplt(Vec3A::splat(MOST_REACH))
         & direction.cmplt(Vec3A::splat(MOST_REACH))
-        & direction.cmpgt(Vec3A::splat(LEAST));
+        & direction.cmpgt(Vec3A::splat(LEAST_DIRECTION));
     in_range.all() && ray.t_min >= 0.0 && ray.t_min <= ray.t_max
 }
 
-impl<'a, Q, P, R, T, N, A> SimdKernel for Wavefront<'_, 'a, Q, P, R, T, N, A>
+/// Whether the scene is within reach for the wavefront and for packets.
+pub(super) fn is_in_range(bvh: &WideBvh) -> bool {
+    let (lower, upper) = (Vec3A::from(bvh.bounds.lower), Vec3A::from(bvh.bounds.upper));
+    lower.abs().max(upper.abs()).max_element() < MOST_REACH
+}
+
+/// Whether a ray's stack holds all that may wait.
+pub(super) fn is_shallow(bvh: &WideBvh) -> bool {
+    bvh.depth as usize <= MOST_LEVELS
+}
+
+/// In memory that was asked for.
+pub(super) fn stacks(memory: &mut Vec<Stack>) -> &mut [Stack; IN_FLIGHT] {
+    memory.resize(IN_FLIGHT, Stack::EMPTY);
+    memory.first_chunk_mut().expect("it was made so long")
+}
+
+impl<'b, 'a, 's, R, T, N, A> Flight<'b, 'a, 's, R, T, N, A>
 where
     for<'r> &'r R: Into<Ray>,
     N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
     A: Fn(&mut T, Option<ClosestHit>),
-    Q: Query,
-    P: PrecisionMode,
 {
-    type Output = ();
-
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let Self { bvh, mut source, answer, .. } = self;
-        let (lower, upper) = (Vec3A::from(bvh.bounds.lower), Vec3A::from(bvh.bounds.upper));
-        let is_in_range = lower.abs().max(upper.abs()).max_element() < MOST_REACH;
-        let mut memory = Vec::new();
-        // A tree or a run too small to pay for the wavefront, or all of them where there is no memory for it.
-        while bvh.bytes() < LEAST_BYTES
-            || !source.has_at_least(LEAST_RAYS)
-            || bvh.depth as usize > MOST_LEVELS
-            || memory.try_reserve_exact(IN_FLIGHT).is_err()
-        {
-            while !source.rays.is_empty() {
-                if is_in_range {
-                    source.answer_packets::<Q, P, S>(simd, bvh, &answer);
-                }
-                let Some((ray, place)) = source.next() else { return };
-                answer(place, bvh.find::<Q, P, S>(simd, ray.into()).0);
-            }
-            if !source.next_run() {
-                return;
-            }
-        }
-        memory.resize(IN_FLIGHT, Stack::EMPTY);
-        let stacks = memory.first_chunk_mut().expect("it was made so long");
+    pub(super) fn new(
+        bvh: &'b WideBvh,
+        source: &'s mut Source<'a, R, T, N>,
+        answer: &'s A,
+        stacks: &'s mut [Stack; IN_FLIGHT],
+    ) -> Self {
         let ray = Ray { origin: glam::Vec3::ZERO, t_min: 0.0, direction: glam::Vec3::X, t_max: 0.0 };
         let idle_ray = TriangleRay::new(&ray);
         let idle_hit = ClosestHit::none(&ray);
-        let mut flight = Flight {
+        Self {
             bvh,
             source,
             answer,
@@ -392,48 +234,41 @@ where
             leaves: [LeafRay::IDLE; IN_FLIGHT],
             slots: std::array::from_fn(|_| Slot { ray: idle_ray, best: idle_hit, answer: None }),
             lists: [List { ids: [0; IN_FLIGHT], count: 0 }; LISTS],
-            lower,
-            upper,
-            is_in_range,
-        };
+            lower: Vec3A::from(bvh.bounds.lower),
+            upper: Vec3A::from(bvh.bounds.upper),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn run<Q: Query, P: PrecisionMode, S: Simd>(mut self, simd: S) {
         for id in 0..IN_FLIGHT {
-            if !flight.feed::<Q, P, S>(simd, id) {
+            if !self.feed::<Q, P, S>(simd, id) {
                 break;
             }
         }
-        while flight.lists[NODE].count + flight.lists[LEAF].count != 0 {
-            flight.test_nodes::<Q, S>(simd);
-            flight.test_leaves::<Q, P, S>(simd);
-            flight.pop::<Q, P, S>(simd);
-            let is_idle = flight.lists[NODE].count + flight.lists[LEAF].count == 0;
-            while flight.lists[EVALUATE].count >= HITS || is_idle && flight.lists[EVALUATE].count > 0 {
-                flight.evaluate::<Q, P, S>(simd);
+        while self.lists[NODE].count + self.lists[LEAF].count != 0 {
+            self.test_nodes::<Q, S>(simd);
+            self.test_leaves::<Q, P, S>(simd);
+            self.pop::<Q, P, S>(simd);
+            let is_idle = self.lists[NODE].count + self.lists[LEAF].count == 0;
+            while self.lists[EVALUATE].count >= HITS || is_idle && self.lists[EVALUATE].count > 0 {
+                self.evaluate::<Q, P, S>(simd);
             }
         }
     }
-}
 
-impl<'a, R, T, N, A> Flight<'_, 'a, '_, R, T, N, A>
-where
-    for<'r> &'r R: Into<Ray>,
-    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
-    A: Fn(&mut T, Option<ClosestHit>),
-{
     /// The next ray that is fit for the wavefront takes a slot; others are answered at once. False without rays.
     #[inline(always)]
     fn feed<Q: Query, P: PrecisionMode, S: Simd>(&mut self, simd: S, id: usize) -> bool {
         loop {
-            if self.is_in_range {
-                self.source.answer_packets::<Q, P, S>(simd, self.bvh, &self.answer);
-            }
+            self.source.answer_packets::<Q, P, S>(simd, self.bvh, self.answer);
             let Some((source, place)) = self.source.next() else { return false };
             let ray: Ray = source.into();
-            if self.is_in_range && !self.source.are_coherent && is_fit(&ray) {
+            if !self.source.are_coherent() && is_fit(&ray) {
                 self.start::<P>(id, &ray, place);
                 return true;
             }
-            let answer = &self.answer;
-            answer(place, self.bvh.find::<Q, P, S>(simd, source.into()).0);
+            (self.answer)(place, self.bvh.find::<Q, P, S>(simd, ray).0);
         }
     }
 

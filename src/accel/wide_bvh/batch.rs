@@ -1,0 +1,328 @@
+//! A worker's share of a batch: rays that go the same way as packets, the others in flight or one by one, whichever is
+//! faster.
+
+use std::marker::PhantomData;
+use std::time::Instant;
+
+use super::WideBvh;
+use super::packet::{Coherent, PACKET, Packet};
+use super::wavefront::{self, Flight};
+use crate::accel::leaf::{ClosestHit, Query};
+use crate::geometry::{Aabb, PrecisionMode, Ray};
+use crate::simd::{Simd, SimdKernel};
+
+/// Trees smaller than this are in the nearest caches: no ray waits long, so neighbours in flight gain nothing. Tests have only such.
+const LEAST_BYTES: usize = if cfg!(debug_assertions) { 1 } else { 2 << 20 };
+
+/// The fewest rays of a run for which the wavefront's memory is asked for.
+const LEAST_RAYS: usize = 2 * wavefront::IN_FLIGHT;
+
+/// How many rays pass before some are looked at as a packet again: after others that went different ways, and at first
+/// after a packet that did not pay.
+const LOOK_AGAIN: usize = 64;
+/// The most rays that pass by after packets that did not pay.
+const MOST_PATIENCE: usize = 64 * LOOK_AGAIN;
+
+/// How many rays a way is tried with. In flight the last 32 of them have ever fewer neighbours, which makes 3 % more of its pace.
+const TRIAL: usize = 512;
+/// The most rays before the slower way is tried again.
+const LONGEST_STRETCH: usize = 64 * TRIAL;
+
+/// How rays go that no packet answers.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    InFlight,
+    Alone,
+}
+
+/// The faster way, and the stretch of rays that goes one way now. After each stretch of the faster way the other is tried,
+/// ever more seldom while it stays the slower one.
+struct Choice {
+    faster: Way,
+    /// In seconds a ray, of its last stretch.
+    faster_pace: f64,
+    way: Way,
+    /// How many rays the next stretch of the faster way takes.
+    patience: usize,
+}
+
+impl Choice {
+    fn new() -> Self {
+        Self { faster: Way::InFlight, faster_pace: 0.0, way: Way::InFlight, patience: TRIAL }
+    }
+
+    fn stretch(&self) -> usize {
+        if self.way == self.faster { self.patience } else { TRIAL }
+    }
+
+    /// After a stretch at this pace.
+    fn go_on(&mut self, pace: f64) {
+        if self.way == self.faster {
+            self.faster_pace = pace;
+            self.way = if self.way == Way::InFlight { Way::Alone } else { Way::InFlight };
+        } else if pace < self.faster_pace {
+            (self.faster, self.faster_pace, self.patience) = (self.way, pace, TRIAL);
+        } else {
+            self.way = self.faster;
+            self.patience = (4 * self.patience).min(LONGEST_STRETCH);
+        }
+    }
+}
+
+/// How long rays take that no packet answers.
+struct Pace {
+    since: Instant,
+    rays: usize,
+    seconds_per_ray: f64,
+    /// Of this stretch.
+    stretch_seconds: f64,
+    stretch_rays: usize,
+}
+
+impl Pace {
+    fn new() -> Self {
+        Self { since: Instant::now(), rays: 0, seconds_per_ray: 0.0, stretch_seconds: 0.0, stretch_rays: 0 }
+    }
+
+    /// Of the rays since the last look, if there were any.
+    fn look(&mut self) {
+        if self.rays != 0 {
+            let now = Instant::now();
+            let seconds = (now - self.since).as_secs_f64();
+            self.seconds_per_ray = seconds / self.rays as f64;
+            self.stretch_seconds += seconds;
+            self.stretch_rays += self.rays;
+            (self.since, self.rays) = (now, 0);
+        }
+    }
+
+    /// Of the whole stretch; another begins.
+    fn end_stretch(&mut self) -> f64 {
+        self.look();
+        let pace = self.stretch_seconds / self.stretch_rays as f64;
+        (self.stretch_seconds, self.stretch_rays) = (0.0, 0);
+        pace
+    }
+}
+
+/// Where rays come from: runs of rays with a place for each answer.
+pub(super) struct Source<'a, R, T, N> {
+    rays: &'a [R],
+    answers: &'a mut [T],
+    next_run: N,
+    /// Whether there is no further run.
+    is_at_end: bool,
+    /// How many rays this stretch still takes.
+    left: usize,
+    /// How many rays are left of those that are not looked at as packets.
+    refused: usize,
+    /// How many rays to pass by after the next packet that is given up, or does not pay.
+    patience: usize,
+    /// Whether the refused rays go the same way all the same: such are faster one by one than in flight.
+    are_coherent: bool,
+    others: Pace,
+}
+
+impl<'a, R, T, N> Source<'a, R, T, N>
+where
+    for<'r> &'r R: Into<Ray>,
+    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
+{
+    /// The first rays show how long they take without packets.
+    fn new(next_run: N) -> Self {
+        Self {
+            rays: &[],
+            answers: &mut [],
+            next_run,
+            is_at_end: false,
+            left: 0,
+            refused: LOOK_AGAIN,
+            patience: LOOK_AGAIN,
+            are_coherent: false,
+            others: Pace::new(),
+        }
+    }
+
+    pub(super) fn are_coherent(&self) -> bool {
+        self.are_coherent
+    }
+
+    /// Goes on to the next run, if this one has no rays left; false if there is none.
+    #[inline(always)]
+    fn has_rays(&mut self) -> bool {
+        while self.rays.is_empty() && !self.is_at_end {
+            match (self.next_run)() {
+                Some(run) => (self.rays, self.answers) = run,
+                None => self.is_at_end = true,
+            }
+        }
+        !self.is_at_end
+    }
+
+    /// The next ray of this stretch that no packet has answered.
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> Option<(&'a R, &'a mut T)> {
+        if self.left == 0 || !self.has_rays() {
+            return None;
+        }
+        let (ray, rays) = self.rays.split_first()?;
+        let (answer, answers) = std::mem::take(&mut self.answers).split_first_mut()?;
+        (self.rays, self.answers) = (rays, answers);
+        self.left -= 1;
+        self.refused = self.refused.saturating_sub(1);
+        self.others.rays += 1;
+        Some((ray, answer))
+    }
+
+    /// The next rays if they look like a packet, and their places. Looks once at each group, and first at how long
+    /// some rays take without.
+    #[inline(always)]
+    fn next_packet(&mut self, simd: impl Simd, bounds: &Aabb) -> Option<(&'a [R; PACKET], Coherent, &mut [T])> {
+        if self.refused != 0 || !self.has_rays() {
+            return None;
+        }
+        self.others.look();
+        (self.refused, self.are_coherent) = (LOOK_AGAIN, false);
+        let rays = self.rays.first_chunk::<PACKET>()?;
+        let coherent = Coherent::of(simd, rays, bounds)?;
+        self.refused = 0;
+        Some((rays, coherent, &mut self.answers[..PACKET]))
+    }
+
+    /// After an attempt at a packet: goes past it if it was answered. If it was not, or took longer than its rays
+    /// would have alone, it leaves ever more of the rays that follow to the others.
+    #[inline(always)]
+    fn end_packet(&mut self, is_answered: bool) {
+        let start = std::mem::replace(&mut self.others.since, Instant::now());
+        if is_answered {
+            self.rays = &self.rays[PACKET..];
+            self.answers = &mut std::mem::take(&mut self.answers)[PACKET..];
+        }
+        let seconds_per_ray = (self.others.since - start).as_secs_f64() / PACKET as f64;
+        if is_answered && seconds_per_ray < self.others.seconds_per_ray {
+            (self.refused, self.patience) = (0, LOOK_AGAIN);
+        } else {
+            self.refused = self.patience;
+            self.patience = (2 * self.patience).min(MOST_PATIENCE);
+        }
+        self.are_coherent = true;
+    }
+
+    /// Answers the next rays in packets, as long as those pay.
+    #[inline(always)]
+    pub(super) fn answer_packets<Q: Query, P: PrecisionMode, S: Simd>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh,
+        answer: &impl Fn(&mut T, Option<ClosestHit>),
+    ) {
+        if self.refused == 0 {
+            simd.vectorize_batch(Packets::<Q, P, _, _, _, _> { bvh, source: self, answer, choices: PhantomData });
+        }
+    }
+}
+
+/// Packets as long as they pay, as a kernel.
+struct Packets<'b, 's, 'a, Q, P, R, T, N, A> {
+    bvh: &'b WideBvh,
+    source: &'s mut Source<'a, R, T, N>,
+    answer: &'s A,
+    choices: PhantomData<(Q, P)>,
+}
+
+impl<'a, Q, P, R, T, N, A> SimdKernel for Packets<'_, '_, 'a, Q, P, R, T, N, A>
+where
+    for<'r> &'r R: Into<Ray>,
+    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
+    A: Fn(&mut T, Option<ClosestHit>),
+    Q: Query,
+    P: PrecisionMode,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { bvh, source, answer, .. } = self;
+        while let Some((rays, coherent, places)) = source.next_packet(simd, &bvh.bounds) {
+            let is_answered = Packet::<Q, P, _, _, _>::new(bvh, rays, &coherent, places, answer).run(simd);
+            source.end_packet(is_answered);
+        }
+    }
+}
+
+/// The rays of one worker, as a kernel.
+pub(super) struct Batch<'b, 'a, Q, P, R, T, N, A> {
+    bvh: &'b WideBvh,
+    source: Source<'a, R, T, N>,
+    answer: A,
+    choices: PhantomData<(Q, P)>,
+}
+
+impl<'b, 'a, Q, P, R, T, N, A> Batch<'b, 'a, Q, P, R, T, N, A>
+where
+    for<'r> &'r R: Into<Ray>,
+    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
+{
+    pub(super) fn new(bvh: &'b WideBvh, next_run: N, answer: A) -> Self {
+        Self { bvh, source: Source::new(next_run), answer, choices: PhantomData }
+    }
+}
+
+impl<'a, Q, P, R, T, N, A> SimdKernel for Batch<'_, 'a, Q, P, R, T, N, A>
+where
+    for<'r> &'r R: Into<Ray>,
+    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
+    A: Fn(&mut T, Option<ClosestHit>),
+    Q: Query,
+    P: PrecisionMode,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { bvh, mut source, answer, .. } = self;
+        let has_packets = wavefront::is_in_range(bvh);
+        let may_fly = has_packets && bvh.bytes() >= LEAST_BYTES && wavefront::is_shallow(bvh);
+        let mut memory = Vec::new();
+        let mut choice = Choice::new();
+        while source.has_rays() {
+            // A tree or a run too small to pay for the wavefront, or all of them where there is no memory for it.
+            let flies =
+                may_fly && source.rays.len() >= LEAST_RAYS && memory.try_reserve_exact(wavefront::IN_FLIGHT).is_ok();
+            source.left = match (flies, may_fly) {
+                (true, _) => choice.stretch(),
+                (false, true) => source.rays.len(),
+                (false, false) => usize::MAX,
+            };
+            if flies && choice.way == Way::InFlight {
+                Flight::new(bvh, &mut source, &answer, wavefront::stacks(&mut memory)).run::<Q, P, S>(simd);
+            } else {
+                answer_alone::<Q, P, S, _, _, _>(simd, bvh, &mut source, has_packets, &answer);
+            }
+            if flies {
+                choice.go_on(source.others.end_stretch());
+            }
+        }
+    }
+}
+
+/// The rays of a stretch one by one, but for packets.
+#[inline(always)]
+fn answer_alone<'a, Q: Query, P: PrecisionMode, S: Simd, R, T, N>(
+    simd: S,
+    bvh: &WideBvh,
+    source: &mut Source<'a, R, T, N>,
+    has_packets: bool,
+    answer: &impl Fn(&mut T, Option<ClosestHit>),
+) where
+    for<'r> &'r R: Into<Ray>,
+    N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
+{
+    loop {
+        if has_packets {
+            source.answer_packets::<Q, P, S>(simd, bvh, answer);
+        }
+        let Some((ray, place)) = source.next() else { return };
+        answer(place, bvh.find::<Q, P, S>(simd, ray.into()).0);
+    }
+}
