@@ -7,9 +7,9 @@ use crate::accel::reference::Bounds8;
 use crate::geometry::Triangle;
 use crate::simd::Simd;
 
-/// How far a part's box reaches beyond the part along each axis, in extents of the whole triangle: [`halves`] has the
-/// reason.
-const OVERLAP: f64 = 4.0 * EPSILON;
+/// How far a part's box reaches beyond the part along each axis, in lengths of the whole triangle's largest extent:
+/// [`halves`] has the reason.
+const OVERLAP: f64 = 8.0 * EPSILON;
 const EPSILON: f64 = 1.0 / (1 << 24) as f64;
 
 /// The boxes of what a plane leaves, on either side, of the part of a triangle that is inside `bounds`; empty where
@@ -19,9 +19,11 @@ const EPSILON: f64 = 1.0 / (1 << 24) as f64;
 /// triangle, of one part, within the band. Along an axis where it moves, the slack of [`crate::geometry::SlabRay`] covers
 /// the band. Along another there is no slack: there, with `u = 2^-24`, the sheared coordinates of the vertices are exact
 /// but for the rounding of `vertex - origin`, so relatively by `u`, and the ray passes the point within `u` times the
-/// triangle's extent. The boxes reach four times as far, but never beyond the triangle's own, beside which hits are
-/// refused exactly. The three to spare exceed by far what the roundings in `f64` take. `bounds` reaches as far beyond its
-/// part, so cutting again loses nothing.
+/// triangle's extent. Nor is there slack where a part's box ends behind the origin ([`crate::geometry::BEHIND`]), but not the triangle:
+/// the point that the ray passes then is no more than `4u` of the largest extent behind the origin, and the box would reach
+/// beyond it; so it belongs to another part. The boxes reach twice as far, but never beyond the triangle's own, beside which hits
+/// are refused exactly. What is to spare exceeds by far what the roundings in `f64` take. `bounds` reaches as far beyond its part, so
+/// cutting again loses nothing.
 pub(super) fn halves(triangle: &Triangle, bounds: &Bounds8, axis: usize, plane: f32) -> [Bounds8; 2] {
     let plane = f64::from(plane);
     let vertices: [[f64; 3]; 3] = std::array::from_fn(|corner| triangle.axes.map(|row| f64::from(row[corner])));
@@ -42,8 +44,9 @@ pub(super) fn halves(triangle: &Triangle, bounds: &Bounds8, axis: usize, plane: 
             sides[1].grow(&point);
         }
     }
-    let overlaps = triangle.axes.map(|[a, b, c]| OVERLAP * (f64::from(a.max(b).max(c)) - f64::from(a.min(b).min(c))));
-    sides.map(|side| side.enlarged(&overlaps).intersection_with(bounds))
+    let extents = triangle.axes.map(|[a, b, c]| f64::from(a.max(b).max(c)) - f64::from(a.min(b).min(c)));
+    let overlap = OVERLAP * extents.into_iter().fold(0.0, f64::max);
+    sides.map(|side| side.enlarged(overlap).intersection_with(bounds))
 }
 
 struct Extents {
@@ -61,8 +64,8 @@ impl Extents {
         }
     }
 
-    fn enlarged(mut self, by: &[f64; 3]) -> Self {
-        for (axis, by) in by.iter().enumerate() {
+    fn enlarged(mut self, by: f64) -> Self {
+        for axis in 0..3 {
             self.lower[axis] -= by;
             self.upper[axis] += by;
         }
