@@ -79,6 +79,8 @@ pub(crate) trait PrecisionMode {
     const IS_EXACT: bool;
     /// Whether hits can be evaluated several at once.
     const HAS_LANES: bool;
+    /// Whether `t` is where the weights lead to, not only somewhere between those of the vertices.
+    const FOLLOWS_WEIGHTS: bool;
 
     /// The hit of a triangle about which `f32` did not decide. One outside the interval may be given or not: the caller
     /// looks.
@@ -180,7 +182,7 @@ impl TriangleRay {
     }
 
     /// An [`Evaluation::Near`] of a triangle that lies across an axis, as floors and walls do: the plane gives `t`, two roundings off,
-    /// however near to 0. It is negative where the exact one is, so that [what ends behind the origin](BEHIND) is not hit.
+    /// however near to 0. Its sign is that of the exact one, so that [what ends behind the origin](BEHIND) is not hit.
     #[cold]
     #[inline(never)]
     fn hit_across<P: PrecisionMode>(&self, hit: TriangleHit, corners: &Corners) -> Option<TriangleHit> {
@@ -190,7 +192,8 @@ impl TriangleRay {
             if a.to_bits() == b.to_bits() && b.to_bits() == c.to_bits() && direction != 0.0 {
                 let t = (widen(a) - origin) / direction;
                 let is_known = !P::IS_EXACT || t == 0.0 || rounds_alike(t, 2.0 * f64::EPSILON * t.abs());
-                return is_known.then_some(TriangleHit { t: t as f32, ..hit });
+                // Adding 0 makes 0 of -0.
+                return is_known.then_some(TriangleHit { t: t as f32 + 0.0, ..hit });
             }
         }
         None
@@ -267,6 +270,7 @@ impl TriangleRay {
 impl PrecisionMode for Fast {
     const IS_EXACT: bool = false;
     const HAS_LANES: bool = false;
+    const FOLLOWS_WEIGHTS: bool = false;
 
     #[inline(never)]
     fn settle(
@@ -328,6 +332,7 @@ impl PrecisionMode for Fast {
 impl PrecisionMode for Accurate {
     const IS_EXACT: bool = false;
     const HAS_LANES: bool = true;
+    const FOLLOWS_WEIGHTS: bool = true;
 
     #[inline(never)]
     fn settle(
@@ -368,6 +373,7 @@ impl PrecisionMode for Accurate {
 impl PrecisionMode for Exact {
     const IS_EXACT: bool = true;
     const HAS_LANES: bool = true;
+    const FOLLOWS_WEIGHTS: bool = true;
 
     #[inline(never)]
     fn settle(

@@ -160,6 +160,25 @@ fn batches_of_every_length_give_the_hits_of_single_calls() {
     }
 }
 
+/// `FAST` takes `t` from the plane, far from where the weights of this sliver lead to, which the ray sees end-on.
+#[test]
+fn fast_batches_give_the_hit_of_a_sliver_that_single_calls_give() {
+    let s = 1.0 / 65536.0;
+    let (near, far) = (0.875 + 4.0 * s - s, 0.875 + 4.0 * s + 2.0 * s);
+    let (tip, depth) = (Vec3::new(0.5 - s, 0.5 - s, 1.0), 1.75 + 8.0 * s);
+    let mesh = Mesh::from_soup("sliver", vec![tip, Vec3::new(far, near, depth), Vec3::new(near, far, depth)]);
+    let options = BuildOptions { structure: Structure::WideBvh, precision: Precision::Fast, ..BuildOptions::default() };
+    let scene = build(&mesh, options);
+    let ray = Ray { origin: Vec3::ZERO, t_min: 0.0, direction: Vec3::new(0.5, 0.5, 1.0), t_max: 1.2 };
+    let expected = scene.intersect(&ray);
+    assert_eq!(expected.t, 137.0 / 128.0);
+    let rays = [ray; 200];
+    for hit in batch(&scene, &rays, 1) {
+        assert_eq!(bits(&hit), bits(&expected));
+    }
+    assert_eq!(batch_occluded(&scene, &rays, 1), [true; 200]);
+}
+
 #[test]
 fn every_structure_gives_the_hits_of_brute_force() {
     for mesh in meshes() {

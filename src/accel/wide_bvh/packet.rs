@@ -17,7 +17,6 @@ use super::wavefront::{LEAST_DIRECTION, MOST_REACH, Signs, is_fit, shear, spans,
 use crate::accel::bvh::node::MOST_LEVELS;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Aabb, HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, settled};
-
 use crate::math::gamma;
 use crate::simd::{LANES, Simd, SimdKernel, prefetch};
 
@@ -33,7 +32,7 @@ const MOST_DISTANCE: f32 = 1.0 / 64.0;
 
 /// A packet whose leaves are each met by fewer rays than this on average is given up after so many leaves: rays one by
 /// one test a leaf's triangles at once, too.
-const LEAST_RAYS: u32 = 3;
+const LEAST_RAYS_A_LEAF: u32 = 3;
 const TRIAL_LEAVES: u32 = 8;
 
 /// One value a ray.
@@ -165,7 +164,7 @@ pub(super) struct Packet<'b, 'p, Q, P, R, T, A> {
     bvh: &'b WideBvh,
     rays: &'p [R; PACKET],
     coherent: &'p Coherent,
-    places: &'p mut [T],
+    places: &'p mut [T; PACKET],
     answer: &'p A,
     choices: PhantomData<(Q, P)>,
 }
@@ -175,7 +174,7 @@ impl<'b, 'p, Q, P, R, T, A> Packet<'b, 'p, Q, P, R, T, A> {
         bvh: &'b WideBvh,
         rays: &'p [R; PACKET],
         coherent: &'p Coherent,
-        places: &'p mut [T],
+        places: &'p mut [T; PACKET],
         answer: &'p A,
     ) -> Self {
         Self { bvh, rays, coherent, places, answer, choices: PhantomData }
@@ -251,7 +250,7 @@ where
                 let planes = bvh.nodes.get(current.parent as usize).filter(|_| current.slot < LANES as u32);
                 let mut is_changed = false;
                 leaf_count += 1;
-                if leaf_count >= TRIAL_LEAVES && ray_count < LEAST_RAYS * leaf_count {
+                if leaf_count >= TRIAL_LEAVES && ray_count < LEAST_RAYS_A_LEAF * leaf_count {
                     return false;
                 }
                 for group in 0..GROUPS {
@@ -307,7 +306,7 @@ where
                 rays.settle_group::<P>(group, bvh, &mut best);
             }
         }
-        for (index, place) in places.iter_mut().enumerate().take(PACKET) {
+        for (index, place) in places.iter_mut().enumerate() {
             if Q::FIRST_HIT_ENDS {
                 let is_hit = rays.pending[index].is_some() || best[index].found().is_some();
                 answer(place, is_hit.then_some(best[index]));
@@ -448,7 +447,7 @@ impl<'p> Rays<'p> {
             if candidates == 0 {
                 continue;
             }
-            let spans = spans(simd, &sheared, &weights, signs, inverse_depth);
+            let spans = spans::<P, S>(simd, &sheared, &weights, signs, inverse_depth);
             let mut left = candidates & spans.within(simd, t_min, load(simd, &self.farthest, group));
             let (from, to) = (simd.store(spans.from), simd.store(spans.to));
             is_changed |= left != 0;
@@ -484,12 +483,12 @@ impl<'p> Rays<'p> {
     fn settle_group<P: PrecisionMode>(&mut self, group: usize, bvh: &WideBvh, best: &mut [ClosestHit; PACKET]) {
         let axes = self.coherent.axes;
         let first = group % GROUPS * LANES;
-        let of_group = |row: &Row| *row[first..].first_chunk().expect("a whole group");
+        let values = |row: &Row| *row[first..].first_chunk().expect("a whole group");
         let Coherent { origin, direction, .. } = self.coherent;
         let [kx, ky, kz] = axes.map(|axis| axis % 3);
         let mut lanes = HitLanes::of_rays(
-            [of_group(&origin[kx]), of_group(&origin[ky]), of_group(&origin[kz])],
-            [of_group(&direction[kx]), of_group(&direction[ky]), of_group(&direction[kz])],
+            [values(&origin[kx]), values(&origin[ky]), values(&origin[kz])],
+            [values(&direction[kx]), values(&direction[ky]), values(&direction[kz])],
         );
         for of_group in 0..LANES {
             let index = (group * LANES + of_group) % PACKET;

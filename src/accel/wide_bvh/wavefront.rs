@@ -377,7 +377,7 @@ where
             let signs = Signs::of::<P, S>(simd, &sheared, &weights, ray.edge_slack);
             let candidates = leaf.mask() & !signs.differ;
             if candidates != 0 {
-                let spans = spans(simd, &sheared, &weights, signs, simd.splat(ray.inverse_depth));
+                let spans = spans::<P, S>(simd, &sheared, &weights, signs, simd.splat(ray.inverse_depth));
                 if self.keep_candidates::<Q, P, S>(simd, id, &leaf, candidates, &spans) {
                     // Nothing is left to do for it.
                     self.boxes[id].top = LANES as u32;
@@ -627,15 +627,15 @@ impl<S: Simd> Spans<S> {
 /// inverse, the product), u for the hit's, 2^-30 for evaluation in `f64` (`evaluation.rs`), and u for adding the slack:
 /// less than `gamma(8)`.
 ///
-/// Closer bounds come from the weights. Of the sheared vertices let `s = sum(|x| + |y|)`, `n` the largest of these,
+/// Closer bounds come from the weights, where `t` [follows them](PrecisionMode::FOLLOWS_WEIGHTS). Of the sheared vertices let `s = sum(|x| + |y|)`, `n` the largest of these,
 /// and `m` the largest `|z|`. Before the shear no coordinate exceeds `n + m`, so the sheared ones are off by
 /// `e = 2 u (n + m) + 4 u m` at most (`triangle_hit.rs`), which moves the three weights by `2 e s + 6 e^2` together;
 /// and their own roundings by `u s^2 / 2`. Weights that move by d together move the depth that they interpolate, where
 /// their sum is w, by no more than `2 d / w` of the range of the depths; or else by no more than that range, which
-/// this then exceeds. The interpolation's own roundings, and those of FAST's, add less than `24 u m`. The factors below are a little larger
+/// this then exceeds. The interpolation's own roundings add less than `24 u m`. The factors below are a little larger
 /// for the roundings of the bound itself; absolute terms cover underflow.
 #[inline(always)]
-pub(super) fn spans<S: Simd>(
+pub(super) fn spans<P: PrecisionMode, S: Simd>(
     simd: S,
     &[x, y, z]: &[Corners<S>; 3],
     &[a, b, c]: &Corners<S>,
@@ -666,14 +666,14 @@ pub(super) fn spans<S: Simd>(
     let (first, last) = (simd.mul(nearest, inverse_depth), simd.mul(farthest, inverse_depth));
     let slack = simd
         .add(simd.mul(simd.splat(gamma(8)), simd.max(simd.abs(first), simd.abs(last))), simd.splat(f32::MIN_POSITIVE));
+    let (from, to) = (simd.sub(simd.min(first, last), slack), simd.add(simd.max(first, last), slack));
+    if !P::FOLLOWS_WEIGHTS {
+        return Spans { certain: signs.agree, from, to };
+    }
     let t = simd.mul(depth, inverse_depth);
     let t_error = simd.mul(depth_error, simd.abs(inverse_depth));
     // A NaN, from weights that are all zero, leaves the vertices' bounds.
-    Spans {
-        certain: signs.agree,
-        from: simd.max(simd.sub(t, t_error), simd.sub(simd.min(first, last), slack)),
-        to: simd.min(simd.add(t, t_error), simd.add(simd.max(first, last), slack)),
-    }
+    Spans { certain: signs.agree, from: simd.max(simd.sub(t, t_error), from), to: simd.min(simd.add(t, t_error), to) }
 }
 
 #[inline(always)]
