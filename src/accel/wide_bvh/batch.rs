@@ -23,7 +23,7 @@ const LOOK_AGAIN: usize = 64;
 /// The most rays that pass by after packets that did not pay.
 const MOST_PATIENCE: usize = 64 * LOOK_AGAIN;
 
-/// How many rays a way is tried with. In flight the last 32 of them have ever fewer neighbours, which makes 3 % more of its pace.
+/// How many rays a way is tried with: enough that the last ones in flight, which have ever fewer neighbours, do not show.
 const TRIAL: usize = 512;
 /// The most rays before the slower way is tried again.
 const LONGEST_STRETCH: usize = 64 * TRIAL;
@@ -96,11 +96,13 @@ impl Pace {
         }
     }
 
-    /// Of the whole stretch; another begins.
+    /// Of the whole stretch, with what its last rays took after they were looked at; another begins.
     fn end_stretch(&mut self) -> f64 {
         self.look();
-        let pace = self.stretch_seconds / self.stretch_rays as f64;
-        (self.stretch_seconds, self.stretch_rays) = (0.0, 0);
+        let now = Instant::now();
+        let seconds = self.stretch_seconds + (now - self.since).as_secs_f64();
+        let pace = seconds / self.stretch_rays as f64;
+        (self.since, self.stretch_seconds, self.stretch_rays) = (now, 0.0, 0);
         pace
     }
 }
@@ -152,7 +154,8 @@ where
     fn has_rays(&mut self) -> bool {
         while self.rays.is_empty() && !self.is_at_end {
             match (self.next_run)() {
-                Some(run) => (self.rays, self.answers) = run,
+                // Without a place a ray has no answer.
+                Some((rays, answers)) => (self.rays, self.answers) = (&rays[..rays.len().min(answers.len())], answers),
                 None => self.is_at_end = true,
             }
         }
@@ -174,10 +177,10 @@ where
         Some((ray, answer))
     }
 
-    /// The next rays if they look like a packet, and their places. Looks once at each group, and first at how long
-    /// some rays take without.
+    /// The next rays if they look like a packet, and their places. After some that do not, others pass by first. Looks before at how
+    /// long rays take without.
     #[inline(always)]
-    fn next_packet(&mut self, simd: impl Simd, bounds: &Aabb) -> Option<(&'a [R; PACKET], Coherent, &mut [T])> {
+    fn next_packet(&mut self, simd: impl Simd, bounds: &Aabb) -> Option<(&'a [R; PACKET], Coherent, &mut [T; PACKET])> {
         if self.refused != 0 || !self.has_rays() {
             return None;
         }
@@ -186,7 +189,7 @@ where
         let rays = self.rays.first_chunk::<PACKET>()?;
         let coherent = Coherent::of(simd, rays, bounds)?;
         self.refused = 0;
-        Some((rays, coherent, &mut self.answers[..PACKET]))
+        Some((rays, coherent, self.answers.first_chunk_mut()?))
     }
 
     /// After an attempt at a packet: goes past it if it was answered. If it was not, or took longer than its rays
@@ -286,9 +289,10 @@ where
         let mut memory = Vec::new();
         let mut choice = Choice::new();
         while source.has_rays() {
-            // A tree or a run too small to pay for the wavefront, or all of them where there is no memory for it.
-            let flies =
-                may_fly && source.rays.len() >= LEAST_RAYS && memory.try_reserve_exact(wavefront::IN_FLIGHT).is_ok();
+            // Not where a tree or a run is too small to pay for it, or where there is no memory.
+            let flies = may_fly
+                && source.rays.len() >= LEAST_RAYS
+                && (!memory.is_empty() || memory.try_reserve_exact(wavefront::IN_FLIGHT).is_ok());
             source.left = match (flies, may_fly) {
                 (true, _) => choice.stretch(),
                 (false, true) => source.rays.len(),
@@ -299,8 +303,9 @@ where
             } else {
                 answer_alone::<Q, P, S, _, _, _>(simd, bvh, &mut source, has_packets, &answer);
             }
+            let pace = source.others.end_stretch();
             if flies {
-                choice.go_on(source.others.end_stretch());
+                choice.go_on(pace);
             }
         }
     }
