@@ -62,15 +62,13 @@ const BATCH_FRAME: &str = "15vectorize_batch5frame";
 
 /// What a kernel may call: other frames, what few triangles reach (out of line for that), what rays along planes need
 /// once, and what panics.
-const MAY_BE_CALLED: [&str; 14] = [
+const MAY_BE_CALLED: [&str; 12] = [
     FRAME,
     ROOTS,
     "6settle",
     "3hit",
     "8precedes",
-    "11certain_hit28_$u7b$$u7b$closure",
-    "10hit_slowly",
-    "10hit_across",
+    "8hit_near",
     "7SlabRay3new",
     "4core9panicking",
     "16slice_index_fail",

@@ -21,6 +21,7 @@ pub use aabb::Aabb;
 pub(crate) use aabb::{BEHIND, ObliqueSlabs, SlabRay, band_distance};
 pub(crate) use clip::Polygon;
 pub(crate) use crossing::Crossing;
+pub(crate) use evaluation::Evaluation;
 pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};
 pub(crate) use hit_point::HitPoint;
 pub use mesh_view::{IndexBytes, IndexView, PositionView, SphereView, TriangleView, span_bytes};

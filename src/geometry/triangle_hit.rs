@@ -160,31 +160,25 @@ impl TriangleRay {
         P::settle(self, triangle, &x, &y, interval).filter(|hit| interval.contains(hit.t) && hit.t.is_finite())
     }
 
-    /// [`TriangleRay::hit`] for a triangle whose `f32` edge functions have one sign, none zero: it is taken for hit,
-    /// and what remains to tell is where.
-    #[inline(always)]
-    pub(crate) fn certain_hit<P: PrecisionMode, S: Simd>(
+    /// [`TriangleRay::hit`] for a triangle whose `f32` edge functions have one sign, none zero, and of which
+    /// [`PrecisionMode::evaluate_certain`] gave an [`Evaluation::Near`].
+    pub(crate) fn hit_near<P: PrecisionMode>(
         &self,
-        simd: S,
-        corners: &Corners,
+        triangle: &Triangle,
+        (hit, t, t_error): (TriangleHit, f64, f64),
         interval: Interval,
-        triangle: impl FnOnce() -> Triangle,
     ) -> Option<TriangleHit> {
-        match P::evaluate_certain(simd, self, corners, interval.t_min) {
-            Some(Evaluation::Inside(hit)) => interval.contains(hit.t).then_some(hit),
-            Some(Evaluation::Behind) => None,
-            Some(Evaluation::Near { t, t_error, .. }) if interval.excludes(t, t_error) => None,
-            Some(Evaluation::Near { hit, .. }) if let Some(hit) = self.hit_across::<P>(hit, corners) => {
-                interval.contains(hit.t).then_some(hit)
-            }
-            _ => self.hit_slowly::<P>(&triangle(), interval),
+        if interval.excludes(t, t_error) {
+            return None;
+        }
+        match self.hit_across::<P>(hit, &self.corners(triangle)) {
+            Some(hit) => interval.contains(hit.t).then_some(hit),
+            None => self.hit::<P>(triangle, interval),
         }
     }
 
     /// An [`Evaluation::Near`] of a triangle that lies across an axis, as floors and walls do: the plane gives `t`, two roundings off,
     /// however near to 0. Its sign is that of the exact one, so that [what ends behind the origin](BEHIND) is not hit.
-    #[cold]
-    #[inline(never)]
     fn hit_across<P: PrecisionMode>(&self, hit: TriangleHit, corners: &Corners) -> Option<TriangleHit> {
         for (&[a, b, c], axis) in corners.iter().zip(self.axes) {
             let (origin, direction) = (widen(self.origin[axis & 3]), widen(self.direction[axis & 3]));
@@ -197,12 +191,6 @@ impl TriangleRay {
             }
         }
         None
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn hit_slowly<P: PrecisionMode>(&self, triangle: &Triangle, interval: Interval) -> Option<TriangleHit> {
-        self.hit::<P>(triangle, interval)
     }
 
     /// The weights that decide in `f32`, where they take the triangle for hit: each rounded once.
@@ -626,7 +614,13 @@ mod tests {
             let (x, y, _) = ray.shear(&ray.corners(&triangle));
             let (any_negative, any_positive) = signs_beyond(&edge_functions(&x, &y), 0.0);
             if any_negative != any_positive && edge_functions(&x, &y).iter().all(|edge| *edge != 0.0) {
-                let certain = ray.certain_hit::<Accurate, _>(Scalar, &ray.corners(&triangle), WHOLE_LINE, || triangle);
+                let certain = match Accurate::evaluate_certain(Scalar, &ray, &ray.corners(&triangle), WHOLE_LINE.t_min) {
+                    Some(Evaluation::Inside(hit)) => Some(hit),
+                    Some(Evaluation::Near { hit, t, t_error, .. }) => {
+                        ray.hit_near::<Accurate>(&triangle, (hit, t, t_error), WHOLE_LINE)
+                    }
+                    _ => ray.hit::<Accurate>(&triangle, WHOLE_LINE),
+                };
                 prop_assert_eq!(certain, Some(accurate));
             }
         }

@@ -59,7 +59,8 @@ impl<F: LeafForm> WideBvh<F> {
         let (ray, boxes) = (around.ray(), AlongX::new(around.point()));
         let each = Each::<F, _, true> { bvh: self, kept: around };
         let mut stack = Aligned(Stack::new_const());
-        let mut walk = Walk::<AnyHit, F, _>::new::<Accurate>(self, &ray, &mut stack.0, each);
+        let leaves = F::Test::new::<Accurate>(self, &ray);
+        let mut walk = Walk::<AnyHit, F, _>::new(self, &leaves, &mut stack.0, each);
         walk.run_from_root::<Accurate, _, _>(Scalar, &boxes);
     }
 }
@@ -78,11 +79,16 @@ impl<F: LeafForm, P: PrecisionMode> SimdKernel for OfferHits<'_, '_, F, P> {
     fn run<S: Simd>(self, simd: S) {
         let Self { bvh, ray, all, .. } = self;
         let mut stack = Aligned(Stack::new_const());
-        let mut walk = Walk::<Every, F, _>::new::<P>(bvh, ray, &mut stack.0, Each::<F, _, false> { bvh, kept: all });
+        let mut leaves = F::Test::new::<P>(bvh, ray);
+        let each = Each::<F, _, false> { bvh, kept: all };
         match ObliqueSlabs::new(ray, &bvh.corners) {
-            Some(slabs) => walk.run_from_root::<P, S, _>(simd, &Oblique::new(slabs)),
+            Some(slabs) => {
+                let mut walk = Walk::<Every, F, _>::new(bvh, &leaves, &mut stack.0, each);
+                walk.run_from_root::<P, S, _>(simd, &Oblique::new(slabs))
+            }
             None => {
-                walk.leaves.check_range();
+                leaves.check_range();
+                let mut walk = Walk::<Every, F, _>::new(bvh, &leaves, &mut stack.0, each);
                 walk.run_from_root::<P, S, _>(simd, &Plain::new(SlabRay::new(ray, &bvh.bounds), ray.t_min))
             }
         };

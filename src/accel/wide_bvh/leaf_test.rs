@@ -10,7 +10,7 @@ use super::leaves::{LeafForm, LeafRows, LeafTriangles, TriangleForm};
 use super::node::Child;
 use crate::accel::Primitive;
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{Interval, PrecisionMode, Ray, TriangleHit, TriangleRay, edge_slack, least_doubt};
+use crate::geometry::{Evaluation, Interval, PrecisionMode, Ray, TriangleHit, TriangleRay, edge_slack, least_doubt};
 use crate::math::UNIT_ROUNDOFF;
 use crate::simd::Simd;
 
@@ -60,9 +60,8 @@ pub(super) type Corners<S> = [<S as Simd>::F32x8; 3];
 /// The best hit so far.
 #[derive(Clone, Copy)]
 pub(crate) struct Best {
-    /// Its `t`, `u` and `v`; while there is none the ray's `t_max`. Stored and loaded as a whole: a load that spans several
-    /// stores waits for all of them.
-    hit: Vec4,
+    /// While there is none, `t` is the ray's `t_max`.
+    hit: TriangleHit,
     place: Place,
 }
 
@@ -107,13 +106,13 @@ impl Best {
     #[inline(always)]
     pub(super) fn none(ray: &Ray) -> Self {
         let t_max = if ray.t_max < f32::MAX { ray.t_max } else { f32::MAX };
-        Self { hit: Vec4::new(t_max, 0.0, 0.0, 0.0), place: Place { leaf: Child::NONE, lane: 0 } }
+        Self { hit: TriangleHit { t: t_max, u: 0.0, v: 0.0 }, place: Place { leaf: Child::NONE, lane: 0 } }
     }
 
     /// Beyond this nothing is better.
     #[inline(always)]
     pub(super) fn t_max(&self) -> f32 {
-        self.hit.x
+        self.hit.t
     }
 
     /// Keeps a hit of the ray at `t_max` or before it, if it is better.
@@ -125,8 +124,8 @@ impl Best {
         hit: TriangleHit,
         place: Place,
     ) {
-        if hit.t < self.hit.x || precedes::<F, P>(bvh, ray, place, self.place) {
-            *self = Self { hit: Vec4::new(hit.t, hit.u, hit.v, 0.0), place };
+        if hit.t < self.hit.t || precedes::<F, P>(bvh, ray, place, self.place) {
+            *self = Self { hit, place };
         }
     }
 
@@ -135,7 +134,7 @@ impl Best {
         if self.place.leaf == Child::NONE {
             return None;
         }
-        let [t, u, v, _] = self.hit.to_array();
+        let TriangleHit { t, u, v } = self.hit;
         Some(bvh.leaves.resolve(ClosestHit { t, u, v, primitive: self.place.primitive(bvh) }))
     }
 }
@@ -200,23 +199,31 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         candidates: Candidates,
         best: &mut Best,
     ) -> bool {
-        let leaf = self.bvh.leaves.leaf(child.triangles());
         let mut left = candidates.lanes;
         while left != 0 {
             let lane = left.trailing_zeros();
             left &= left - 1;
-            let interval = Interval { t_min: self.t_min, t_max: best.hit.x };
+            let interval = Interval { t_min: self.t_min, t_max: best.hit.t };
+            let place = Place::new(child, lane);
             let is_sure = candidates.sure >> lane & 1 != 0;
-            let hit = if is_sure {
-                self.certain_hit::<P, S>(simd, &leaf, lane, interval)
-            } else {
-                self.hit::<P>(&leaf, lane, interval)
-            };
-            if let Some(hit) = hit {
-                if Q::FIRST_HIT_ENDS {
-                    return true;
+            // Each hit is kept where it is found: one place for all would have them come through memory, piece by piece, and be
+            // loaded as a whole.
+            let ends = match if is_sure { self.evaluate::<P, S>(simd, place) } else { None } {
+                Some(Evaluation::Inside(hit)) => interval.contains(hit.t) && self.keep::<Q, P>(hit, place, best),
+                Some(Evaluation::Behind) => false,
+                Some(Evaluation::Near { hit, t, t_error, .. }) => {
+                    match self.hit_near::<P>(place, (hit, t, t_error), interval) {
+                        Some(hit) => self.keep::<Q, P>(hit, place, best),
+                        None => false,
+                    }
                 }
-                best.improve::<F, P>(self.bvh, &self.ray, hit, Place::new(child, lane));
+                _ => match self.hit::<P>(place, interval) {
+                    Some(hit) => self.keep::<Q, P>(hit, place, best),
+                    None => false,
+                },
+            };
+            if ends {
+                return true;
             }
         }
         false
@@ -282,25 +289,44 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         Candidates { lanes, sure, inside }
     }
 
+    /// True ends the query.
+    #[inline(always)]
+    fn keep<Q: Query, P: PrecisionMode>(&self, hit: TriangleHit, place: Place, best: &mut Best) -> bool {
+        if !Q::FIRST_HIT_ENDS {
+            best.improve::<F, P>(self.bvh, &self.ray, hit, place);
+        }
+        Q::FIRST_HIT_ENDS
+    }
+
     /// For a triangle that is certainly hit somewhere.
     #[inline(always)]
-    fn certain_hit<P: PrecisionMode, S: Simd>(
-        &self,
-        simd: S,
-        leaf: &F::Leaf<'_>,
-        lane: u32,
-        interval: Interval,
-    ) -> Option<TriangleHit> {
+    fn evaluate<P: PrecisionMode, S: Simd>(&self, simd: S, place: Place) -> Option<Evaluation> {
         let [kx, ky, kz] = self.ray.axes;
-        let lane = lane as usize;
+        let (leaf, lane) = (self.leaf(place), place.lane as usize);
         let corners = [leaf.corners(kx, lane), leaf.corners(ky, lane), leaf.corners(kz, lane)];
-        self.ray.certain_hit::<P, S>(simd, &corners, interval, || leaf.triangle(lane))
+        P::evaluate_certain(simd, &self.ray, &corners, self.t_min)
+    }
+
+    #[inline(always)]
+    fn leaf(&self, place: Place) -> F::Leaf<'_> {
+        self.bvh.leaves.leaf(place.leaf.triangles())
     }
 
     #[cold]
     #[inline(never)]
-    fn hit<P: PrecisionMode>(&self, leaf: &F::Leaf<'_>, lane: u32, interval: Interval) -> Option<TriangleHit> {
-        self.ray.hit::<P>(&leaf.triangle(lane as usize), interval)
+    fn hit_near<P: PrecisionMode>(
+        &self,
+        place: Place,
+        near: (TriangleHit, f64, f64),
+        interval: Interval,
+    ) -> Option<TriangleHit> {
+        self.ray.hit_near::<P>(&self.leaf(place).triangle(place.lane as usize), near, interval)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn hit<P: PrecisionMode>(&self, place: Place, interval: Interval) -> Option<TriangleHit> {
+        self.ray.hit::<P>(&self.leaf(place).triangle(place.lane as usize), interval)
     }
 }
 

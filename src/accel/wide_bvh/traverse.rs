@@ -98,7 +98,8 @@ where
                     return then(None, tally);
                 };
                 let mut stack = Aligned(Stack::new_const());
-                let mut walk = Walk::<Q, F, Best>::new::<P>(bvh, &ray, &mut stack.0, best);
+                let leaves = F::Test::new::<P>(bvh, &ray);
+                let mut walk = Walk::<Q, F, Best>::new(bvh, &leaves, &mut stack.0, best);
                 let found = walk.find::<P, S, _>(simd, &boxes, start);
                 then(found.map(|hit| hit.on_surface(&ray)), walk.tally)
             }
@@ -129,8 +130,9 @@ impl<Q: Query, P: PrecisionMode, F: LeafForm> SimdKernel for AlongPlanes<'_, Q, 
         }
         let mut stack = Aligned(Stack::new_const());
         let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
-        let mut walk = Walk::<Q, F, Best>::new::<P>(bvh, &ray, &mut stack.0, Best::none(&ray));
-        walk.leaves.check_range();
+        let mut leaves = F::Test::new::<P>(bvh, &ray);
+        leaves.check_range();
+        let mut walk = Walk::<Q, F, Best>::new(bvh, &leaves, &mut stack.0, Best::none(&ray));
         let found = walk.start(simd, &boxes).and_then(|start| walk.find::<P, S, _>(simd, &boxes, start));
         (found.map(|hit| hit.on_surface(&ray)), walk.tally)
     }
@@ -172,10 +174,12 @@ impl<F: LeafForm> Keep<F> for Best {
 }
 
 /// A ray on its way through the tree.
-pub(super) struct Walk<'a, Q: Query, F: LeafForm, K> {
+///
+/// Points to what calls out of the kernel need, so that the walk itself can be kept in registers.
+pub(super) struct Walk<'w, 'a, Q: Query, F: LeafForm, K> {
     bvh: &'a WideBvh<F>,
-    stack: &'a mut Stack,
-    pub(super) leaves: F::Test<'a>,
+    stack: &'w mut Stack,
+    leaves: &'w F::Test<'a>,
     kept: K,
     tally: Q::Tally,
 }
@@ -201,7 +205,7 @@ impl<S: Simd> Start<S> {
     }
 }
 
-impl<Q: Query, F: LeafForm> Walk<'_, Q, F, Best> {
+impl<Q: Query, F: LeafForm> Walk<'_, '_, Q, F, Best> {
     #[inline(always)]
     fn find<P: PrecisionMode, S: Simd, B: Boxes>(
         &mut self,
@@ -219,10 +223,10 @@ impl<Q: Query, F: LeafForm> Walk<'_, Q, F, Best> {
     }
 }
 
-impl<'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'a, Q, F, K> {
+impl<'w, 'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'w, 'a, Q, F, K> {
     #[inline(always)]
-    pub(super) fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray, stack: &'a mut Stack, kept: K) -> Self {
-        Self { bvh, stack, leaves: F::Test::new::<P>(bvh, ray), kept, tally: Q::Tally::default() }
+    pub(super) fn new(bvh: &'a WideBvh<F>, leaves: &'w F::Test<'a>, stack: &'w mut Stack, kept: K) -> Self {
+        Self { bvh, stack, leaves, kept, tally: Q::Tally::default() }
     }
 
     /// `None` where the ray meets nothing.
@@ -255,7 +259,7 @@ impl<'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'a, Q, F, K> {
             loop {
                 if child.is_leaf() {
                     self.tally.test_primitives(child.triangles().1);
-                    if self.kept.test_leaf::<Q, P, S>(&self.leaves, simd, child, t_min, t_max) {
+                    if self.kept.test_leaf::<Q, P, S>(self.leaves, simd, child, t_min, t_max) {
                         return true;
                     }
                     break;
@@ -290,7 +294,7 @@ impl<'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'a, Q, F, K> {
         } else if Q::FIRST_HIT_ENDS {
             wait_in_any_order(self.bvh, node, first, hits, self.stack)
         } else {
-            wait_in_order::<F, B>(self.bvh, node, first, hits, &simd.store(enter), self.stack)
+            wait_in_order::<F, B>(self.bvh, node, first, hits, &Aligned(simd.store(enter)).0, self.stack)
         }
     }
 }
