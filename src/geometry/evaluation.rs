@@ -83,13 +83,13 @@ impl Evaluation {
         const E: f64 = f64::UNIT_ROUNDOFF;
         /// With vertices this far away for each length of the direction, `t` beyond its bound is no denormal.
         const LEAST_DEPTH: f64 = 1.0 / (1u128 << 64) as f64;
-        let [kx, ky, kz] = ray.axes;
-        let splat = |values: &[f32; 4], axis: usize| simd.splat3(values[axis & 3]);
-        let (dx, dy, dz) = (splat(&ray.direction, kx), splat(&ray.direction, ky), splat(&ray.direction, kz));
+        let ([ox, oy, oz, _], [dx, dy, dz, _]) = (ray.origin, ray.direction);
+        let (ox, oy, oz) = (simd.splat3(ox), simd.splat3(oy), simd.splat3(oz));
+        let (dx, dy, dz) = (simd.splat3(dx), simd.splat3(dy), simd.splat3(dz));
         // A lane a vertex.
-        let ax = simd.sub3(simd.widen3(corners[0]), splat(&ray.origin, kx));
-        let ay = simd.sub3(simd.widen3(corners[1]), splat(&ray.origin, ky));
-        let az = simd.sub3(simd.widen3(corners[2]), splat(&ray.origin, kz));
+        let ax = simd.sub3(simd.widen3(corners[0]), ox);
+        let ay = simd.sub3(simd.widen3(corners[1]), oy);
+        let az = simd.sub3(simd.widen3(corners[2]), oz);
         let x = simd.sub3(simd.mul3(ax, dz), simd.mul3(az, dx));
         let y = simd.sub3(simd.mul3(ay, dz), simd.mul3(az, dy));
         let first = simd.mul3(simd.third_first(x), simd.second_first(y));
@@ -99,7 +99,7 @@ impl Evaluation {
         let size = a + b + c;
         let [a, b, c] = simd.values3(simd.abs3(az));
         let depth = greatest3(a, b, c);
-        let dz = f64::from(ray.direction[kz & 3]);
+        let dz = f64::from(ray.direction[2]);
         let reach = 16.0 * E * (size + depth * dz.abs());
         let bound = reach * (size + reach);
         let [a, b, c] = simd.values3(weights);
@@ -186,10 +186,10 @@ pub(super) struct Measured<R> {
 
 impl<R: Real> Measured<R> {
     pub(super) fn of(ray: &TriangleRay, triangle: &Triangle) -> Self {
-        let [kx, ky, kz] = ray.axes;
-        let [dx, dy, dz] = [kx, ky, kz].map(|axis| R::from(widen(ray.direction[axis])));
-        let from_origin = |axis: usize| triangle.axes[axis].map(|v| R::difference(widen(v), widen(ray.origin[axis])));
-        let [ax, ay, az] = [kx, ky, kz].map(from_origin);
+        let [dx, dy, dz, _] = ray.direction.map(|component| R::from(widen(component)));
+        let from_origin =
+            |at: usize| triangle.axes[ray.axes[at]].map(|v| R::difference(widen(v), widen(ray.origin[at])));
+        let [ax, ay, az] = [0, 1, 2].map(from_origin);
         let x: [R; 3] = std::array::from_fn(|corner| ax[corner] * dz - dx * az[corner]);
         let y: [R; 3] = std::array::from_fn(|corner| ay[corner] * dz - dy * az[corner]);
 

@@ -31,9 +31,9 @@ impl HitLanes {
 
     #[inline(always)]
     pub(crate) fn set(&mut self, lane: usize, ray: &TriangleRay, triangle: &Triangle) {
-        for (axis, of_ray) in ray.axes.into_iter().enumerate() {
-            self.origin[axis][lane % HITS] = ray.origin[of_ray % 3];
-            self.direction[axis][lane % HITS] = ray.direction[of_ray % 3];
+        for axis in 0..3 {
+            self.origin[axis][lane % HITS] = ray.origin[axis];
+            self.direction[axis][lane % HITS] = ray.direction[axis];
         }
         self.set_triangle(lane, ray.axes, triangle);
     }

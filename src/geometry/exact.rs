@@ -51,7 +51,7 @@ impl TriangleRay {
     #[inline(never)]
     pub(super) fn hit_exactly(&self, triangle: &Triangle) -> Option<TriangleHit> {
         // In a plane across an axis, as rays along a floor are, or beside it.
-        if (0..3).any(|axis| self.direction[axis] == 0.0 && triangle.lies_across(axis)) {
+        if (0..3).any(|at| self.direction[at] == 0.0 && triangle.lies_across(self.axes[at])) {
             return None;
         }
         self.verdict::<f64>(triangle)
@@ -167,10 +167,11 @@ type Vector = [Expansion; 3];
 
 impl Meeting {
     fn of(ray: &TriangleRay, triangle: &Triangle) -> Self {
+        let (origin, direction) = (ray.in_scene(&ray.origin), ray.in_scene(&ray.direction));
         let vertex = |corner: usize| -> Vector {
-            std::array::from_fn(|axis| Expansion::difference(triangle.axes[axis][corner], ray.origin[axis]))
+            std::array::from_fn(|axis| Expansion::difference(triangle.axes[axis][corner], origin[axis]))
         };
-        let direction: Vector = std::array::from_fn(|axis| Expansion::difference(ray.direction[axis], 0.0));
+        let direction: Vector = direction.map(|component| Expansion::difference(component, 0.0));
         let (a, b, c) = (vertex(0), vertex(1), vertex(2));
         let across = cross(&b, &c);
         Self {

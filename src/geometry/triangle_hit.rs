@@ -30,7 +30,8 @@ pub(crate) struct TriangleHit {
     pub(crate) v: f32,
 }
 
-/// A ray made ready for triangle tests. Aligned, so that none of its vectors crosses a cache line.
+/// A ray made ready for triangle tests, in the order of [`TriangleRay::axes`]. Aligned, so that none of its vectors crosses a cache
+/// line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(16))]
 pub(crate) struct TriangleRay {
@@ -38,7 +39,7 @@ pub(crate) struct TriangleRay {
     pub(crate) origin: [f32; 4],
     /// 1 in the fourth lane.
     pub(crate) direction: [f32; 4],
-    /// x, y and z of the sheared space, as axes of the scene's.
+    /// x, y and z of the sheared space, as axes of the scene's: z is the one along which the direction is the longest.
     pub(crate) axes: [usize; 3],
     /// `direction / dz`: how far the shear moves a point for each unit of z; and `1 / dz`.
     pub(crate) per_z: [f32; 4],
@@ -124,11 +125,14 @@ impl TriangleRay {
         let (origin, direction) = (ray.origin.extend(0.0), ray.direction.extend(1.0));
         // Of equal components the first is taken, so that the choice is the same everywhere.
         let magnitude = direction.abs();
-        let largest = magnitude.max(magnitude.yzxw()).max(magnitude.zxyw());
+        let largest = magnitude.max(magnitude.yzxw()).max(magnitude.zxyw()).xxxx();
+        let (is_x, is_y) = (magnitude.xxxx().cmpeq(largest), magnitude.yyyy().cmpeq(largest));
+        let in_order = |v: Vec4| Vec4::select(is_x, v.yzxw(), Vec4::select(is_y, v.zxyw(), v));
+        let (origin, direction) = (in_order(origin), in_order(direction));
         let kz = magnitude.cmpeq(largest).bitmask().trailing_zeros() as usize % 4;
         // Two bits for each axis: the next one, and the one after that.
         let (kx, ky) = (0b00_10_01 >> (2 * kz) & 3, 0b01_00_10 >> (2 * kz) & 3);
-        let per_z = direction / Vec4::splat(direction.to_array()[kz & 3]);
+        let per_z = direction / direction.zzzz();
         Self { origin: origin.to_array(), direction: direction.to_array(), axes: [kx, ky, kz], per_z: per_z.to_array() }
     }
 
@@ -153,7 +157,7 @@ impl TriangleRay {
             return Some(hit).filter(|hit| interval.contains(hit.t) && !self.ends_behind(hit, &corners));
         }
         // A hit's t lies between those of its vertices.
-        let is_behind = z.iter().all(|z| z / self.direction[self.axes[2]] < 0.0);
+        let is_behind = z.iter().all(|z| z / self.direction[2] < 0.0);
         if is_behind && interval.t_min >= 0.0 {
             return None;
         }
@@ -180,8 +184,8 @@ impl TriangleRay {
     /// An [`Evaluation::Near`] of a triangle that lies across an axis, as floors and walls do: the plane gives `t`, two roundings off,
     /// however near to 0. Its sign is that of the exact one, so that [what ends behind the origin](BEHIND) is not hit.
     fn hit_across<P: PrecisionMode>(&self, hit: TriangleHit, corners: &Corners) -> Option<TriangleHit> {
-        for (&[a, b, c], axis) in corners.iter().zip(self.axes) {
-            let (origin, direction) = (widen(self.origin[axis & 3]), widen(self.direction[axis & 3]));
+        for (axis, &[a, b, c]) in corners.iter().enumerate() {
+            let (origin, direction) = (widen(self.origin[axis]), widen(self.direction[axis]));
             // By their bits: a host may read denormal ones as 0.
             if a.to_bits() == b.to_bits() && b.to_bits() == c.to_bits() && direction != 0.0 {
                 let t = (widen(a) - origin) / direction;
@@ -215,23 +219,30 @@ impl TriangleRay {
 
     #[inline(always)]
     fn ends_behind_along(&self, corners: &Corners, axis: usize) -> bool {
-        let of_scene = self.axes[axis] & 3;
-        let (origin, inverse) = (self.origin[of_scene], 1.0 / self.direction[of_scene]);
+        let (origin, inverse) = (self.origin[axis], 1.0 / self.direction[axis]);
         let [a, b, c] = corners[axis];
         let (a, b, c) = ((a - origin) * inverse, (b - origin) * inverse, (c - origin) * inverse);
         // Of a zero direction component the inverse is infinite: the ray does not leave.
         inverse.is_finite() & (a < BEHIND) & (b < BEHIND) & (c < BEHIND)
     }
 
+    /// One of its vectors as the scene has it.
+    pub(super) fn in_scene(&self, vector: &[f32; 4]) -> [f32; 3] {
+        let mut of_scene = [0.0; 3];
+        for (value, axis) in vector.iter().zip(self.axes) {
+            of_scene[axis] = *value;
+        }
+        of_scene
+    }
+
     /// Relative to the origin, so that the ray is the axis of z.
     #[inline(always)]
     fn shear(&self, corners: &Corners) -> ([f32; 3], [f32; 3], [f32; 3]) {
-        let [kx, ky, kz] = self.axes.map(|axis| axis & 3);
         let from_origin = |[a, b, c]: [f32; 3], origin: f32| [a - origin, b - origin, c - origin];
-        let z = from_origin(corners[2], self.origin[kz]);
+        let z = from_origin(corners[2], self.origin[2]);
         let shear = |[a, b, c]: [f32; 3], slope: f32| [a - slope * z[0], b - slope * z[1], c - slope * z[2]];
-        let x = shear(from_origin(corners[0], self.origin[kx]), self.per_z[kx]);
-        let y = shear(from_origin(corners[1], self.origin[ky]), self.per_z[ky]);
+        let x = shear(from_origin(corners[0], self.origin[0]), self.per_z[0]);
+        let y = shear(from_origin(corners[1], self.origin[1]), self.per_z[1]);
         (x, y, z)
     }
 
@@ -245,13 +256,12 @@ impl TriangleRay {
     fn interpolate(&self, weights: &Weights<f64>, z: &[f64; 3]) -> TriangleHit {
         let [a, b, c] = weights;
         let sum = a + b + c;
-        let t = (a * z[0] + b * z[1] + c * z[2]) / (sum * f64::from(self.direction[self.axes[2]]));
+        let t = (a * z[0] + b * z[1] + c * z[2]) / (sum * f64::from(self.direction[2]));
         TriangleHit { t: t as f32, u: (b / sum) as f32, v: (c / sum) as f32 }
     }
 
     fn main_axis_distances(&self, triangle: &Triangle) -> [f64; 3] {
-        let kz = self.axes[2];
-        triangle.axes[kz].map(|v| f64::from(v) - f64::from(self.origin[kz]))
+        triangle.axes[self.axes[2]].map(|v| f64::from(v) - f64::from(self.origin[2]))
     }
 }
 
@@ -286,25 +296,24 @@ impl PrecisionMode for Fast {
     ) -> Option<TriangleHit> {
         let per_sum = 1.0 / (a + b + c);
         let (u, v) = (b * per_sum, c * per_sum);
-        let [kx, ky, kz] = ray.axes.map(|axis| axis & 3);
         let edges = |[a, b, c]: [f32; 3]| (b - a, c - a);
         let (x, y, depth) = (edges(corners[0]), edges(corners[1]), edges(corners[2]));
         let normal = [y.0 * depth.1 - depth.0 * y.1, depth.0 * x.1 - x.0 * depth.1, x.0 * y.1 - y.0 * x.1];
         let along = |p: [f32; 3]| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
-        let distance = along([corners[0][0] - ray.origin[kx], corners[1][0] - ray.origin[ky], z[0]]);
-        let direction = [ray.direction[kx], ray.direction[ky], ray.direction[kz]];
+        let distance = along([corners[0][0] - ray.origin[0], corners[1][0] - ray.origin[1], z[0]]);
+        let [dx, dy, dz, _] = ray.direction;
         // Measured: from 1 on CAD loses rays' origins, at 0 scans have twice the error.
         const SHARE: f32 = 0.25;
         let size = x.0.abs().max(x.1.abs()).max(y.0.abs()).max(y.1.abs());
         let depth_range = depth.0.abs().max(depth.1.abs());
         let between = if depth_range * size > SHARE * (normal[0].abs() + normal[1].abs() + normal[2].abs()) {
-            distance / along(direction) * direction[2]
+            distance / along([dx, dy, dz]) * dz
         } else {
             z[0] + (u * depth.0 + v * depth.1)
         };
         // Rounding does not lead out of the triangle, or its box could be passed over. This makes a number of a NaN.
         let (least, most) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
-        let t = between.max(least).min(most) / direction[2];
+        let t = between.max(least).min(most) / dz;
         // Not where something was beyond the range of `f32`.
         (t.is_finite() & u.is_finite() & v.is_finite()).then_some(TriangleHit { t, u, v })
     }
@@ -447,7 +456,7 @@ fn evaluate_slowly(
         Evaluation::Inside(hit) => Some(hit),
         Evaluation::Near { t, t_error, .. } if interval.excludes(t, t_error) => None,
         Evaluation::Near { hit, t_per_volume, .. } => {
-            let t = t_per_volume * triangle.signed_volume([ray.origin[0], ray.origin[1], ray.origin[2]]);
+            let t = t_per_volume * triangle.signed_volume(ray.in_scene(&ray.origin));
             Some(TriangleHit { t: t as f32, ..hit })
         }
         Evaluation::Behind => None,

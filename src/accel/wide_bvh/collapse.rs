@@ -243,7 +243,10 @@ pub(super) fn collapse<F: LeafForm, T: PrimitiveSource<Primitive = F::Primitive>
     let parts = context.map_each(subtrees, plan).into_iter().collect::<Result<Vec<_>, _>>()?;
     let top = Plan::new(top, scale, context, |leaf, _| (parts[leaf.first as usize].plan.costs, u32::MAX))?;
 
-    let (top_nodes, mut places) = share_out_top(&top, parts.len());
+    // The root is a node, if only of one leaf.
+    let is_leaf = top.nodes[0].is_leaf() && parts[0].plan.choices[0].is_leaf();
+    let (root_slots, root_cost) = if is_leaf { (1, NODE_COST) } else { (LANES, 0.0) };
+    let (top_nodes, mut places) = share_out_top(&top, parts.len(), root_slots);
     let places_of_parts: Vec<(&Part, &Place)> = parts.iter().zip(&places).collect();
     let counts = context.map_each(places_of_parts, |(part, place)| {
         let leaves = part.plan.leaves(place.slots).map(|(first, count)| &part.references[first..][..count]);
@@ -259,7 +262,7 @@ pub(super) fn collapse<F: LeafForm, T: PrimitiveSource<Primitive = F::Primitive>
 
     let mut nodes = context.filled(next_node, WideNode::EMPTY)?;
     let (above, below) = nodes.split_at_mut(top_nodes.len());
-    let root = emit_top::<F>(&top, &top_nodes, &parts, &places, above, source);
+    emit_top::<F>(&top, &top_nodes, &parts, &places, above, source);
     let mut leaves = Leaves::filled(next_leaf, Ids::new(source.starts()), context)?;
     let (words, ids) = leaves.parts(&leaf_places);
     let tasks: Vec<_> = parts.into_iter().zip(places).zip(slices(below, &node_counts)).zip(words).collect();
@@ -274,18 +277,15 @@ pub(super) fn collapse<F: LeafForm, T: PrimitiveSource<Primitive = F::Primitive>
     let leaf_count = shapes.iter().map(|shape| shape.leaf_count).sum();
     leaves.set_counts(leaf_count, shapes.iter().map(|shape| shape.primitive_count).sum());
     let depth = shapes.iter().map(|shape| shape.depth).max().expect("a tree has a subtree");
-    Ok(WideBvh { bounds, corners: bounds.corners4(), root, nodes, leaves, depth, sah_cost: f64::from(top.costs[0]) })
+    let sah_cost = f64::from(root_cost + top.costs[0]);
+    Ok(WideBvh { bounds, corners: bounds.corners4(), nodes, leaves, depth, sah_cost })
 }
 
 /// The wide nodes above the subtrees, each as the binary nodes that become its children, and each subtree's slots and
 /// level.
-fn share_out_top(top: &Plan, subtree_count: usize) -> (Vec<Entries>, Vec<Place>) {
+fn share_out_top(top: &Plan, subtree_count: usize, root_slots: usize) -> (Vec<Entries>, Vec<Place>) {
     let mut places = vec![Place { slots: 1, level: 1, first_node: 0, first_leaf: 0 }; subtree_count];
-    let (mut nodes, mut levels) = (Vec::new(), Vec::new());
-    if !top.nodes[0].is_leaf() {
-        nodes.push(top.entries(0, LANES));
-        levels.push(1);
-    }
+    let (mut nodes, mut levels) = (vec![top.entries(0, root_slots)], vec![1]);
     let mut at = 0;
     while at < nodes.len() {
         let level = levels[at] + 1;
@@ -304,7 +304,7 @@ fn share_out_top(top: &Plan, subtree_count: usize) -> (Vec<Entries>, Vec<Place>)
     (nodes, places)
 }
 
-/// Fills the nodes above the subtrees; returns the root.
+/// Fills the nodes above the subtrees.
 fn emit_top<F: LeafForm>(
     top: &Plan,
     entries: &[Entries],
@@ -312,7 +312,7 @@ fn emit_top<F: LeafForm>(
     places: &[Place],
     nodes: &mut [WideNode],
     source: &impl PrimitiveSource<Primitive = F::Primitive>,
-) -> Child {
+) {
     let mut next = 1;
     for (node, entries) in nodes.iter_mut().zip(entries) {
         let mut children = Children::new();
@@ -328,7 +328,6 @@ fn emit_top<F: LeafForm>(
         }
         node.fill(children);
     }
-    if nodes.is_empty() { parts[0].children::<F>(&places[0], source)[0].1 } else { Child::node(0) }
 }
 
 /// Wide children and their boxes.

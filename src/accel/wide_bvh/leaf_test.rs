@@ -39,9 +39,6 @@ pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
         t_max: f32,
         best: &mut Best,
     ) -> bool;
-
-    /// The best hit, with its primitive.
-    fn finish(&self, best: &Best) -> Option<ClosestHit<F::Primitive>>;
 }
 
 /// Eight triangles against a ray: the scalar test decides about those that are not refused here, and refuses all that
@@ -129,6 +126,7 @@ impl Best {
         }
     }
 
+    /// With its primitive.
     #[inline(always)]
     pub(super) fn found<F: LeafForm>(&self, bvh: &WideBvh<F>) -> Option<ClosestHit<F::Primitive>> {
         if self.place.leaf == Child::NONE {
@@ -181,11 +179,6 @@ impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     ) -> bool {
         let candidates = self.candidates::<P, S>(simd, child, t_min, t_max);
         (Q::FIRST_HIT_ENDS && candidates.are_hit()) || self.choose::<Q, P, S>(simd, child, candidates, best)
-    }
-
-    #[inline(always)]
-    fn finish(&self, best: &Best) -> Option<ClosestHit> {
-        best.found(self.bvh)
     }
 }
 
@@ -245,11 +238,11 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         let rows = leaf.unpacked(simd);
         let ray = &self.ray;
         let [kx, ky, kz] = ray.axes;
-        let z = from_origin(simd, &rows, kz, simd.splat(ray.origin[kz & 3]));
-        let x = from_origin(simd, &rows, kx, simd.splat(ray.origin[kx & 3]));
-        let y = from_origin(simd, &rows, ky, simd.splat(ray.origin[ky & 3]));
-        let x = shear(simd, x, simd.splat(ray.per_z[kx & 3]), z);
-        let y = shear(simd, y, simd.splat(ray.per_z[ky & 3]), z);
+        let z = from_origin(simd, &rows, kz, simd.splat(ray.origin[2]));
+        let x = from_origin(simd, &rows, kx, simd.splat(ray.origin[0]));
+        let y = from_origin(simd, &rows, ky, simd.splat(ray.origin[1]));
+        let x = shear(simd, x, simd.splat(ray.per_z[0]), z);
+        let y = shear(simd, y, simd.splat(ray.per_z[1]), z);
         let a = edge(simd, x[2], y[1], y[2], x[1]);
         let b = edge(simd, x[0], y[2], y[0], x[2]);
         let c = edge(simd, x[1], y[0], y[1], x[0]);

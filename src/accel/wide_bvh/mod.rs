@@ -43,7 +43,7 @@ pub(crate) struct WideBvh<F = ByAxis> {
     bounds: Aabb,
     /// Of the bounds, as rays want them.
     corners: [Vec4; 2],
-    root: Child,
+    /// The first one is the root.
     nodes: Vec<WideNode>,
     leaves: Leaves<F>,
     depth: u32,
@@ -103,8 +103,7 @@ impl<F: LeafForm> WideBvh<F> {
 
     /// Each primitive's ids, with a number by which [`WideBvh::at_place`] finds it: that of its leaf.
     pub(super) fn for_each_place(&self, mut visit: impl FnMut(u32, (u32, u32))) {
-        let below_root = self.nodes.iter().flat_map(WideNode::children);
-        for leaf in std::iter::once(self.root).chain(below_root).filter(|child| child.is_leaf()) {
+        for leaf in self.nodes.iter().flat_map(WideNode::children).filter(|child| child.is_leaf()) {
             for primitive in self.primitives(leaf) {
                 visit(leaf.bits(), primitive.ids());
             }

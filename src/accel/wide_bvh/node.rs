@@ -16,6 +16,9 @@ impl Child {
     /// How many places of leaves 28 bits can tell apart.
     pub(super) const MOST_PLACES: usize = 1 << Self::PLACE_BITS;
 
+    /// The node that everything is below.
+    pub(super) const ROOT: Self = Self(0);
+
     /// No child. As a node it would be the last of more than there can be.
     pub(super) const NONE: Self = Self(Self::LEAF - 1);
 

@@ -243,21 +243,18 @@ where
         let mut t_max = rays.farthest_of_all(simd);
         let mut stack = Stack::new_const();
         let (mut leaf_count, mut ray_count) = (0, 0);
-        let mut next = Some(Pending { enter: 0.0, child: bvh.root, parent: 0, slot: LANES as u32 });
+        let mut next = Some(Pending { enter: 0.0, child: Child::ROOT, parent: 0, slot: 0 });
         while let Some(current) = next {
             if current.child.is_leaf() {
                 let leaf = bvh.leaves.leaf(current.child.triangles());
-                let planes = bvh.nodes.get(current.parent as usize).filter(|_| current.slot < LANES as u32);
+                let parent = &bvh.nodes[current.parent as usize];
                 let mut is_changed = false;
                 leaf_count += 1;
                 if leaf_count >= TRIAL_LEAVES && ray_count < LEAST_RAYS_A_LEAF * leaf_count {
                     return false;
                 }
                 for group in 0..GROUPS {
-                    let active = match planes {
-                        Some(node) => rays.meet(simd, group, node, current.slot as usize % LANES),
-                        None => 0xFF,
-                    };
+                    let active = rays.meet(simd, group, parent, current.slot as usize % LANES);
                     if active != 0 {
                         ray_count += active.count_ones();
                         is_changed |= rays.test_leaf::<Q, P, R, S>(

@@ -4,7 +4,7 @@ use super::WideBvh;
 use super::leaf_test::{Best, LeafTest, Place};
 use super::leaves::{Ids, LeafForm};
 use super::node::Child;
-use crate::accel::leaf::{ClosestHit, Query};
+use crate::accel::leaf::Query;
 use crate::accel::reference::{PrimitiveSource, Reference};
 use crate::accel::{BuildContext, BuildFailure};
 use crate::geometry::{Interval, PrecisionMode, Ray, Sphere, SphereRay};
@@ -194,10 +194,5 @@ impl<'a> LeafTest<'a, Spheres> for SphereTest<'a> {
             }
         }
         false
-    }
-
-    #[inline(always)]
-    fn finish(&self, best: &Best) -> Option<ClosestHit<Sphere>> {
-        best.found(self.bvh)
     }
 }

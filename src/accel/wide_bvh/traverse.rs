@@ -92,6 +92,7 @@ where
             Some(slabs) => {
                 let boxes = Oblique::new(slabs);
                 let best = Best::none(&ray);
+                // What is to be made ready for leaves, a ray that misses all need not pay for.
                 let Some(start) = Start::at_root(simd, bvh, &boxes, best.t_max()) else {
                     let mut tally = Q::Tally::default();
                     tally.visit_node();
@@ -128,10 +129,10 @@ impl<Q: Query, P: PrecisionMode, F: LeafForm> SimdKernel for AlongPlanes<'_, Q, 
         if !ray.is_valid() {
             return (None, Q::Tally::default());
         }
-        let mut stack = Aligned(Stack::new_const());
-        let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
         let mut leaves = F::Test::new::<P>(bvh, &ray);
         leaves.check_range();
+        let mut stack = Aligned(Stack::new_const());
+        let boxes = Plain::new(SlabRay::new(&ray, &bvh.bounds), ray.t_min);
         let mut walk = Walk::<Q, F, Best>::new(bvh, &leaves, &mut stack.0, Best::none(&ray));
         let found = walk.start(simd, &boxes).and_then(|start| walk.find::<P, S, _>(simd, &boxes, start));
         (found.map(|hit| hit.on_surface(&ray)), walk.tally)
@@ -178,15 +179,14 @@ impl<F: LeafForm> Keep<F> for Best {
 /// Points to what calls out of the kernel need, so that the walk itself can be kept in registers.
 pub(super) struct Walk<'w, 'a, Q: Query, F: LeafForm, K> {
     bvh: &'a WideBvh<F>,
-    stack: &'w mut Stack,
     leaves: &'w F::Test<'a>,
+    stack: &'w mut Stack,
     kept: K,
     tally: Q::Tally,
 }
 
-/// Where a walk begins: the root, if it is a leaf, else those of its children that the ray meets.
+/// Where a walk begins: the children of the root that the ray meets.
 pub(super) struct Start<S: Simd> {
-    child: Child,
     hits: u32,
     enter: S::F32x8,
 }
@@ -195,13 +195,9 @@ impl<S: Simd> Start<S> {
     /// `None` where the ray meets none of them.
     #[inline(always)]
     pub(super) fn at_root(simd: S, bvh: &WideBvh<impl LeafForm>, boxes: &impl Boxes, t_max: f32) -> Option<Self> {
-        let child = bvh.root;
-        if child.is_leaf() {
-            return Some(Self { child, hits: 0, enter: simd.splat(0.0) });
-        }
-        let node = &bvh.nodes.as_slice()[child.node_index()];
-        let (hits, enter) = boxes.prepare(simd).test(simd, node, boxes.scale_time(t_max));
-        (hits != 0).then_some(Self { child, hits, enter })
+        let root = &bvh.nodes.as_slice()[Child::ROOT.node_index()];
+        let (hits, enter) = boxes.prepare(simd).test(simd, root, boxes.scale_time(t_max));
+        (hits != 0).then_some(Self { hits, enter })
     }
 }
 
@@ -218,7 +214,7 @@ impl<Q: Query, F: LeafForm> Walk<'_, '_, Q, F, Best> {
         } else if Q::FIRST_HIT_ENDS {
             None
         } else {
-            self.leaves.finish(&self.kept)
+            self.kept.found(self.bvh)
         }
     }
 }
@@ -226,7 +222,7 @@ impl<Q: Query, F: LeafForm> Walk<'_, '_, Q, F, Best> {
 impl<'w, 'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'w, 'a, Q, F, K> {
     #[inline(always)]
     pub(super) fn new(bvh: &'a WideBvh<F>, leaves: &'w F::Test<'a>, stack: &'w mut Stack, kept: K) -> Self {
-        Self { bvh, stack, leaves, kept, tally: Q::Tally::default() }
+        Self { bvh, leaves, stack, kept, tally: Q::Tally::default() }
     }
 
     /// `None` where the ray meets nothing.
@@ -250,11 +246,9 @@ impl<'w, 'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'w, 'a, Q, F, K> {
         let box_test = boxes.prepare(simd);
         let mut t_max = self.kept.t_max();
         let mut scaled_t_max = boxes.scale_time(t_max);
-        let mut child = start.child;
-        if start.hits != 0 {
-            self.tally.visit_node();
-            child = self.descend::<S, B>(simd, &nodes[child.node_index()], start.hits, start.enter);
-        }
+        self.tally.visit_node();
+        let root = &nodes[Child::ROOT.node_index()];
+        let mut child = self.descend::<S, B>(simd, root, start.hits, start.enter);
         loop {
             loop {
                 if child.is_leaf() {

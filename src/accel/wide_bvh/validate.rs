@@ -18,7 +18,7 @@ impl<F: LeafForm> WideBvh<F> {
     /// reached once, and the stack suffices.
     pub(crate) fn validate(&self) -> Result<(), String> {
         let (mut node_seen, mut leaf_count, mut deepest) = (vec![false; self.nodes.len()], 0, 0);
-        let mut pending = vec![(self.root, self.bounds, 1)];
+        let mut pending = vec![(Child::ROOT, self.bounds, 1)];
         let mut cost = 0.0;
         let (mut primitive_count, mut leaves) = (0, Vec::new());
         while let Some((child, bounds, level)) = pending.pop() {

@@ -294,12 +294,12 @@ where
             near_side: [(sides << 3) & 8, (sides << 2) & 8, (sides << 1) & 8],
             t_min,
             t_max: cull_distance(t_max),
-            child: self.bvh.root,
+            child: Child::ROOT,
             top: LANES as u32,
         };
         self.leaves[id] = LeafRay {
-            origin: [triangle_ray.origin[kx], triangle_ray.origin[ky], triangle_ray.origin[kz]],
-            shear: [triangle_ray.per_z[kx], triangle_ray.per_z[ky]],
+            origin: [triangle_ray.origin[0], triangle_ray.origin[1], triangle_ray.origin[2]],
+            shear: [triangle_ray.per_z[0], triangle_ray.per_z[1]],
             axes: [kx as u32, ky as u32, kz as u32],
             inverse_depth: inverse_array[kz],
             t_min,
@@ -312,7 +312,7 @@ where
         slot.ray = triangle_ray;
         slot.best = ClosestHit::none(ray);
         slot.answer = Some(place);
-        self.lists[usize::from(self.bvh.root.is_leaf())].push(id);
+        self.lists[NODE].push(id);
     }
 
     /// One node for each ray on the list.
