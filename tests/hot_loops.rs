@@ -62,13 +62,14 @@ const BATCH_FRAME: &str = "15vectorize_batch5frame";
 
 /// What a kernel may call: other frames, what few triangles reach (out of line for that), what rays along planes need
 /// once, and what panics.
-const MAY_BE_CALLED: [&str; 12] = [
+const MAY_BE_CALLED: [&str; 13] = [
     FRAME,
     ROOTS,
     "6settle",
     "3hit",
     "8precedes",
     "8hit_near",
+    "19geometry_among_many",
     "7SlabRay3new",
     "4core9panicking",
     "16slice_index_fail",

@@ -63,6 +63,15 @@ impl Scene {
     #[inline(always)]
     pub(super) fn dispatch_to<K: Kernel, T: Primitive>(&self, kernel: K, accel: &AnyAccel<T>) -> K::Output {
         match accel {
+            AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
+            other => self.dispatch_to_other(kernel, other),
+        }
+    }
+
+    /// Apart, so that the fastest structure's rays do not wait for a jump table.
+    #[inline(never)]
+    fn dispatch_to_other<K: Kernel, T: Primitive>(&self, kernel: K, accel: &AnyAccel<T>) -> K::Output {
+        match accel {
             AnyAccel::BruteForce(brute_force) => self.dispatch_apart(kernel, brute_force),
             AnyAccel::Grid(grid) => self.dispatch_apart(kernel, grid),
             AnyAccel::Octree(octree) => self.dispatch_apart(kernel, octree),

@@ -249,24 +249,18 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         let zero = simd.splat(0.0);
         // A NaN may lose a sign here, which refuses less.
         let (least, most) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
-        // Above zero where all have one sign, below where two differ.
-        let agreement = simd.max(least, simd.sub(zero, most));
-        let size = if P::IS_EXACT { size_across(simd, &x, &y) } else { zero };
-        let [slack, least_doubt] = self.edge_slack.map(|slack| simd.splat(slack));
-        let refused = if P::IS_EXACT {
-            simd.less(simd.mul_add(size, slack, simd.add(agreement, least_doubt)), zero)
+        let doubt = if P::IS_EXACT {
+            let [slack, least_doubt] = self.edge_slack.map(|slack| simd.splat(slack));
+            simd.mul_add(size_across(simd, &x, &y), slack, least_doubt)
         } else {
-            simd.less(agreement, zero)
+            zero
         };
+        let refused = simd.less(least, simd.sub(zero, doubt)) & simd.less(doubt, most);
         let mut lanes = leaf.mask() & !refused;
         if lanes == 0 {
             return Candidates { lanes, sure: 0, inside: 0 };
         }
-        let sure = if P::IS_EXACT {
-            simd.less(simd.mul_add(size, slack, least_doubt), agreement)
-        } else {
-            simd.less(zero, agreement)
-        };
+        let sure = simd.less(doubt, least) | simd.less(most, simd.sub(zero, doubt));
         let per_z = simd.splat(ray.per_z[3]);
         let t = [simd.mul(z[0], per_z), simd.mul(z[1], per_z), simd.mul(z[2], per_z)];
         let (first, last) = (simd.min(t[0], simd.min(t[1], t[2])), simd.max(t[0], simd.max(t[1], t[2])));

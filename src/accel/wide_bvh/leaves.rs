@@ -328,7 +328,7 @@ pub(crate) struct Ids {
     /// Where each geometry's numbers begin; at the end where the last one's stop.
     starts: Vec<u32>,
     /// For each bucket of `1 << bucket_bits` numbers the geometry that has its first one, and the same for where the
-    /// last bucket ends: as many buckets as geometries make the search among them short.
+    /// last bucket ends: some for each geometry, so that few have more than two.
     buckets: Vec<u32>,
     bucket_bits: u32,
 }
@@ -337,7 +337,7 @@ impl Ids {
     /// `starts` has for each geometry the number of triangles in those before it, then that of all.
     pub(super) fn new(starts: &[u32]) -> Self {
         let (geometry_count, end) = (starts.len() - 1, starts[starts.len() - 1]);
-        let bucket_bits = (end / geometry_count as u32).checked_ilog2().unwrap_or(0);
+        let bucket_bits = (end / geometry_count as u32).checked_ilog2().unwrap_or(0).saturating_sub(2);
         let bucket_count = (end as usize).div_ceil(1 << bucket_bits);
         let mut ids = Self { starts: starts.to_vec(), buckets: Vec::new(), bucket_bits };
         ids.buckets =
@@ -353,9 +353,18 @@ impl Ids {
     fn separate(&self, id: u32) -> (u32, u32) {
         let bucket = (id >> self.bucket_bits) as usize;
         let (first, last) = (self.buckets[bucket], self.buckets[bucket + 1]);
-        let geometry =
-            if first == last { first } else { self.geometry_of(id as usize, first as usize, last as usize + 1) };
+        let geometry = if last - first > 1 {
+            self.geometry_among_many(id, first, last)
+        } else {
+            first + u32::from(self.starts[first as usize + 1] <= id)
+        };
         (geometry, id - self.starts[geometry as usize])
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn geometry_among_many(&self, id: u32, first: u32, last: u32) -> u32 {
+        self.geometry_of(id as usize, first as usize, last as usize + 1)
     }
 
     /// The geometry that has a number, among those from `first` to before `end`; the last of them for numbers beyond.
