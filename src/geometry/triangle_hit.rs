@@ -219,11 +219,19 @@ impl TriangleRay {
 
     #[inline(always)]
     fn ends_behind_along(&self, corners: &Corners, axis: usize) -> bool {
-        let (origin, inverse) = (self.origin[axis], 1.0 / self.direction[axis]);
+        let (origin, direction) = (self.origin[axis], self.direction[axis]);
         let [a, b, c] = corners[axis];
-        let (a, b, c) = ((a - origin) * inverse, (b - origin) * inverse, (c - origin) * inverse);
-        // Of a zero direction component the inverse is infinite: the ray does not leave.
-        inverse.is_finite() & (a < BEHIND) & (b < BEHIND) & (c < BEHIND)
+        let are_behind = if direction < 0.0 {
+            (a > origin) & (b > origin) & (c > origin)
+        } else {
+            (a < origin) & (b < origin) & (c < origin)
+        };
+        // Few are, so that few wait for the division. Of a zero direction component the inverse is infinite: the ray does not leave.
+        are_behind && {
+            let inverse = 1.0 / direction;
+            let (a, b, c) = ((a - origin) * inverse, (b - origin) * inverse, (c - origin) * inverse);
+            inverse.is_finite() & (a < BEHIND) & (b < BEHIND) & (c < BEHIND)
+        }
     }
 
     /// One of its vectors as the scene has it.
