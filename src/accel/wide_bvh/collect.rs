@@ -31,11 +31,10 @@ impl<F: LeafForm, K: Kept<F::Primitive>, const LOOKS_AT_ALL: bool> Keep<F> for E
         leaves: &F::Test<'_>,
         simd: S,
         child: Child,
-        t_min: S::F32x8,
         t_max: f32,
     ) -> bool {
         let (_, count) = child.triangles();
-        let mut left = if LOOKS_AT_ALL { (1 << count) - 1 } else { leaves.lanes::<P, S>(simd, child, t_min, t_max) };
+        let mut left = if LOOKS_AT_ALL { (1 << count) - 1 } else { leaves.lanes::<P, S>(simd, child, t_max) };
         while left != 0 {
             let lane = left.trailing_zeros();
             left &= left - 1;

@@ -26,19 +26,11 @@ pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
     /// The ray as the scalar test wants it.
     fn ray(&self) -> &<F::Primitive as Primitive>::Ray;
 
-    /// What is not refused between `t_min` and `t_max`, as bits. Must be `#[inline(always)]`.
-    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> u32;
+    /// What is not refused up to `t_max`, as bits. Must be `#[inline(always)]`.
+    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_max: f32) -> u32;
 
-    /// Keeps the best hit; `t_min` is that of the ray, `t_max` that of the best hit. True ends the query. Must be
-    /// `#[inline(always)]`.
-    fn test<Q: Query, P: PrecisionMode, S: Simd>(
-        &self,
-        simd: S,
-        child: Child,
-        t_min: S::F32x8,
-        t_max: f32,
-        best: &mut Best,
-    ) -> bool;
+    /// Keeps the best hit; `t_max` is that of the one before. True ends the query. Must be `#[inline(always)]`.
+    fn test<Q: Query, P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_max: f32, best: &mut Best) -> bool;
 }
 
 /// Eight triangles against a ray: the scalar test decides about those that are not refused here, and refuses all that
@@ -164,20 +156,13 @@ impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     }
 
     #[inline(always)]
-    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> u32 {
-        self.candidates::<P, S>(simd, child, t_min, t_max).lanes
+    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_max: f32) -> u32 {
+        self.candidates::<P, S>(simd, child, t_max).lanes
     }
 
     #[inline(always)]
-    fn test<Q: Query, P: PrecisionMode, S: Simd>(
-        &self,
-        simd: S,
-        child: Child,
-        t_min: S::F32x8,
-        t_max: f32,
-        best: &mut Best,
-    ) -> bool {
-        let candidates = self.candidates::<P, S>(simd, child, t_min, t_max);
+    fn test<Q: Query, P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_max: f32, best: &mut Best) -> bool {
+        let candidates = self.candidates::<P, S>(simd, child, t_max);
         (Q::FIRST_HIT_ENDS && candidates.are_hit()) || self.choose::<Q, P, S>(simd, child, candidates, best)
     }
 }
@@ -233,7 +218,7 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
     /// A NaN fails all comparisons: the triangle then is neither refused nor sure, nor surely inside. One among the edge functions
     /// is passed over by `min` and `max`; the others refuse all the same, and nothing is sure where one was.
     #[inline(always)]
-    fn candidates<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_min: S::F32x8, t_max: f32) -> Candidates {
+    fn candidates<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, t_max: f32) -> Candidates {
         let leaf = self.bvh.leaves.leaf(child.triangles());
         let rows = leaf.unpacked(simd);
         let ray = &self.ray;
@@ -267,7 +252,7 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         let reach = simd.max(last, simd.sub(zero, first));
         let slack = simd.mul_add(reach, simd.splat(10.0 * UNIT_ROUNDOFF), simd.splat(f32::MIN_POSITIVE));
         let (first, last) = (simd.sub(first, slack), simd.add(last, slack));
-        let t_max = simd.splat(t_max);
+        let (t_min, t_max) = (simd.splat(self.t_min), simd.splat(t_max));
         lanes &= !(simd.less(last, t_min) | simd.less(t_max, first));
         // Where edge functions overflow they may have made a NaN, which nothing above keeps.
         let overflow = simd.mul(simd.add(a, simd.add(b, c)), zero);

@@ -167,19 +167,12 @@ impl<'a> LeafTest<'a, Spheres> for SphereTest<'a> {
     }
 
     #[inline(always)]
-    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, _t_min: S::F32x8, _t_max: f32) -> u32 {
+    fn lanes<P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, _t_max: f32) -> u32 {
         self.candidates(simd, child)
     }
 
     #[inline(always)]
-    fn test<Q: Query, P: PrecisionMode, S: Simd>(
-        &self,
-        simd: S,
-        child: Child,
-        _t_min: S::F32x8,
-        _t_max: f32,
-        best: &mut Best,
-    ) -> bool {
+    fn test<Q: Query, P: PrecisionMode, S: Simd>(&self, simd: S, child: Child, _t_max: f32, best: &mut Best) -> bool {
         let mut left = self.candidates(simd, child);
         while left != 0 {
             let lane = left.trailing_zeros();

@@ -100,6 +100,8 @@ where
                 };
                 let mut stack = Aligned(Stack::new_const());
                 let leaves = F::Test::new::<P>(bvh, &ray);
+                // See `Walk::run`.
+                black_box(&leaves);
                 let mut walk = Walk::<Q, F, Best>::new(bvh, &leaves, &mut stack.0, best);
                 let found = walk.find::<P, S, _>(simd, &boxes, start);
                 then(found.map(|hit| hit.on_surface(&ray)), walk.tally)
@@ -150,7 +152,6 @@ pub(super) trait Keep<F: LeafForm> {
         leaves: &F::Test<'_>,
         simd: S,
         child: Child,
-        t_min: S::F32x8,
         t_max: f32,
     ) -> bool;
 }
@@ -167,10 +168,9 @@ impl<F: LeafForm> Keep<F> for Best {
         leaves: &F::Test<'_>,
         simd: S,
         child: Child,
-        t_min: S::F32x8,
         t_max: f32,
     ) -> bool {
-        leaves.test::<Q, P, S>(simd, child, t_min, t_max, self)
+        leaves.test::<Q, P, S>(simd, child, t_max, self)
     }
 }
 
@@ -242,7 +242,6 @@ impl<'w, 'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'w, 'a, Q, F, K> {
     fn run<P: PrecisionMode, S: Simd, B: Boxes>(&mut self, simd: S, boxes: &B, start: Start<S>) -> bool {
         let bvh = self.bvh;
         let nodes = bvh.nodes.as_slice();
-        let t_min = simd.splat(self.leaves.t_min());
         let box_test = boxes.prepare(simd);
         let mut t_max = self.kept.t_max();
         let mut scaled_t_max = boxes.scale_time(t_max);
@@ -253,7 +252,10 @@ impl<'w, 'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'w, 'a, Q, F, K> {
             loop {
                 if child.is_leaf() {
                     self.tally.test_primitives(child.triangles().1);
-                    if self.kept.test_leaf::<Q, P, S>(self.leaves, simd, child, t_min, t_max) {
+                    // The compiler would compute of it what all leaves need before it knows of any, and, without registers for that, store
+                    // it and load it again.
+                    black_box(());
+                    if self.kept.test_leaf::<Q, P, S>(self.leaves, simd, child, t_max) {
                         return true;
                     }
                     break;
