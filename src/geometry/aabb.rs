@@ -169,9 +169,11 @@ impl ObliqueSlabs {
         if !(is_oblique.all() & (0.0 <= ray.t_min) & (ray.t_min <= ray.t_max)) {
             return None;
         }
-        let reach = reach.max(reach.yzzz()).max(reach.zzzz()).x;
-        let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
-        let slack = (origin.abs() * gamma(4) + slack_distance) * inverse.abs();
+        let reach = reach.max(reach.yzzz()).max(reach.zzzz()).xxxx();
+        // What waits for the reach comes last.
+        let size = inverse.abs();
+        let least_slack = (origin.abs() * gamma(4) + Vec4::splat(f32::MIN_POSITIVE)) * size;
+        let slack = least_slack + size * gamma(24) * reach;
         let offset = -inverse * origin;
         Some(Self {
             origin,

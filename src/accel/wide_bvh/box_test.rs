@@ -1,5 +1,7 @@
 //! A node's eight boxes against a ray.
 
+use std::hint::black_box;
+
 use glam::Vec4;
 
 use super::node::WideNode;
@@ -112,6 +114,8 @@ impl<S: Simd> BoxTest<S> for PreparedOblique<S> {
         let mut hits = simd.less_or_equal(enter, leave);
         // Rarely, but for rays that leave a surface.
         if hits & simd.less_or_equal(leave, self.doubtful_until) != 0 {
+            // The planes are read again: to keep them would take registers that are not there.
+            black_box(());
             hits &= self.ahead(simd, node);
         }
         (hits, enter)
