@@ -57,7 +57,8 @@ pub(crate) fn band_distance(origin: Vec3, scene_bounds: &Aabb) -> f32 {
 /// - 1 u M: the addition of the slack rounds once;
 /// - 10 u M: FAST interpolates `t` from distances that are off by u M each, and every `t` is rounded once more.
 ///
-/// `gamma(24)` exceeds the sum with its second-order terms. An absolute term covers underflow.
+/// `gamma(24)` exceeds the sum with its second-order terms. Absolute terms, one in units of length and one of `t`, cover
+/// underflow.
 ///
 /// A zero direction component has no slack: its sheared coordinates keep their sign exactly, so a triangle beside
 /// the ray is refused exactly.
@@ -92,7 +93,7 @@ impl SlabRay {
             match (d == 0.0, inverse.is_infinite()) {
                 (true, _) => (f32::INFINITY.copysign(d), 0.0),
                 (false, true) => (f32::NAN, f32::NAN),
-                (false, false) => (inverse, slack_distance * inverse.abs()),
+                (false, false) => (inverse, slack_distance * inverse.abs() + f32::MIN_POSITIVE),
             }
         };
         let direction = ray.direction.to_array();
@@ -124,8 +125,9 @@ impl SlabRay {
     }
 }
 
-/// A [`SlabRay`] for rays of which no direction component is zero, or as good as zero, or beyond 2^60, as nearly all
-/// are, and no `t_min` below 0. They need no scaling. A plane is met at `plane * inverse + offset`, fused or not.
+/// A [`SlabRay`] for rays of which no direction component is zero, or as good as zero, no coordinate beyond 2^60, as nearly all
+/// are, and no `t_min` below 0. They need no scaling. A plane is met at `plane * inverse + offset`, fused or not: all these
+/// numbers are finite.
 ///
 /// The origin's product, its sum with the slack and the plane's product round once each, before they cancel: `gamma(4)` of the
 /// origin covers that.
@@ -165,14 +167,16 @@ impl ObliqueSlabs {
         let inverse = Vec4::ONE / direction;
         let reach = (*upper - origin).max(origin - *lower);
         // Comparisons with a NaN are false.
-        let is_oblique = direction.abs().max(inverse.abs()).cmplt(MOST) & reach.cmplt(MOST);
+        let origin_size = origin.abs();
+        let is_oblique = direction.abs().max(inverse.abs()).cmplt(MOST) & reach.max(origin_size).cmplt(MOST);
         if !(is_oblique.all() & (0.0 <= ray.t_min) & (ray.t_min <= ray.t_max)) {
             return None;
         }
         let reach = reach.max(reach.yzzz()).max(reach.zzzz()).xxxx();
         // What waits for the reach comes last.
         let size = inverse.abs();
-        let least_slack = (origin.abs() * gamma(4) + Vec4::splat(f32::MIN_POSITIVE)) * size;
+        let least = Vec4::splat(f32::MIN_POSITIVE);
+        let least_slack = (origin_size * gamma(4) + least) * size + least;
         let slack = least_slack + size * gamma(24) * reach;
         let offset = -inverse * origin;
         Some(Self {

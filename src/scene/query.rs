@@ -78,6 +78,7 @@ impl Scene {
             AnyAccel::KdTree(tree) => self.dispatch_apart(kernel, tree),
             AnyAccel::BspTree(tree) => self.dispatch_apart(kernel, tree),
             AnyAccel::Bvh(bvh) => self.dispatch_apart(kernel, bvh),
+            // Comes the other way, but one match knows all structures.
             AnyAccel::WideBvh(bvh) => self.dispatch_isa(kernel, bvh),
             AnyAccel::CompactWideBvh(bvh) => self.dispatch_isa(kernel, bvh),
         }

@@ -422,6 +422,69 @@ fn triangles_whose_edge_functions_overflow_are_decided_alike() {
 }
 
 #[test]
+fn rays_at_the_limits_of_floats_are_answered_alike() {
+    let float = f32::from_bits;
+    let at = |corners: [[f32; 3]; 3]| Mesh::from_soup("limits", corners.map(Vec3::from_array).to_vec());
+    let from = |origin: [f32; 3], direction: [f32; 3], t_min: f32| Ray {
+        origin: origin.into(),
+        direction: direction.into(),
+        t_min,
+        t_max: f32::INFINITY,
+    };
+    let far = |aside: f32| 1e21 + aside;
+    let depth = float(0x1165_49A0);
+    let cases = [
+        // The origin's product with the inverse direction overflows.
+        (
+            at([[far(-1e16), -1.0, 0.0], [far(1e16), -1.0, 0.0], [far(0.0), 1.0, 0.0]]),
+            [from([1e21, 0.3, -1.0], [1e-18, 1e-3, 1.0], 0.0), from([1e21, 0.3, -1.0], [-1e-18, 1e-3, 1.0], 0.0)],
+        ),
+        // The hit is before all floats.
+        (
+            at([[-1.0, -1.0, -10.0], [1.0, -1.0, -10.0], [0.0, 1.0, -10.0]]),
+            [
+                from([0.0; 3], [0.0, 0.0, 1.2e-38], f32::NEG_INFINITY),
+                from([0.0; 3], [1e-40, 0.0, 1.2e-38], f32::NEG_INFINITY),
+            ],
+        ),
+        // Its t is denormal.
+        (
+            at([
+                [float(0x9163_0BB3), float(0x9154_8BA8), depth],
+                [float(0x112B_C682), float(0x10F1_A21E), depth],
+                [float(0x10AD_CDCE), float(0x90C4_77E0), depth],
+            ]),
+            [
+                from(
+                    [float(0x115A_BADE), float(0x1126_4E4B), float(0x922E_E871)],
+                    [float(0xD9D9_C6E4), float(0xD9B9_2100), float(0x5A63_1FF4)],
+                    0.0,
+                ),
+                from(
+                    [float(0x115A_BADE), float(0x1126_4E4B), float(0x922E_E871)],
+                    [float(0xDED9_C6E4), float(0xDEB9_2100), float(0x5F63_1FF4)],
+                    0.0,
+                ),
+            ],
+        ),
+    ];
+    for (mesh, rays) in &cases {
+        for precision in [Precision::Accurate, Precision::Exact] {
+            let brute_force = BuildOptions { structure: Structure::BruteForce, precision, ..BuildOptions::default() };
+            let measure = build(mesh, brute_force);
+            for options in variants() {
+                let scene = build(mesh, BuildOptions { precision, ..options });
+                for ray in rays {
+                    let (hit, expected) = (scene.intersect(ray), measure.intersect(ray));
+                    assert_eq!(bits(&hit), bits(&expected), "{options:?}, {precision:?}, {}", hexadecimal(ray));
+                    assert_eq!(scene.occluded(ray), expected.is_hit(), "{options:?}, {}", hexadecimal(ray));
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn collinear_triangles_are_never_hit() {
     let mut rng = Rng::new(17);
     let points: Vec<Vec3> = (0..300).map(|_| rng.point()).collect();

@@ -108,7 +108,7 @@ impl<S: Simd> BoxTest<S> for PreparedOblique<S> {
         let far_x = simd.mul_add(simd.load(far_x), self.inverse[0], self.far_offset[0]);
         let far_y = simd.mul_add(simd.load(far_y), self.inverse[1], self.far_offset[1]);
         let far_z = simd.mul_add(simd.load(far_z), self.inverse[2], self.far_offset[2]);
-        // A NaN, from a product that overflowed, decides nothing: the second operand is kept. In pairs, which wait less for each other.
+        // In pairs, which wait less for each other.
         let enter = simd.max(simd.max(near_x, near_y), simd.max(near_z, self.t_min));
         let leave = simd.min(simd.min(far_x, far_y), simd.min(far_z, simd.splat(t_max)));
         let mut hits = simd.less_or_equal(enter, leave);

@@ -137,9 +137,11 @@ impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     }
 
     /// For directions so short that `1 / dz` overflows: its bounds of `t` then decide nothing, being NaN. Nor must they where `t`
-    /// may be negative: whether a triangle behind the origin is hit depends on its `t` (see `TriangleRay::ends_behind`).
+    /// may be negative: whether a triangle behind the origin is hit depends on its `t` (see `TriangleRay::ends_behind`). A `t`
+    /// before all floats is no hit.
     #[inline(always)]
     fn check_range(&mut self) {
+        self.t_min = self.t_min.max(f32::MIN);
         if self.ray.per_z[3].is_infinite() || self.t_min < 0.0 {
             self.ray.per_z[3] = f32::NAN;
         }

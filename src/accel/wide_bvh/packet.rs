@@ -363,6 +363,7 @@ impl<'p> Rays<'p> {
                 let offset = simd.mul(load(simd, &coherent.origin[axis], group), inverse);
                 let slack = simd
                     .add(simd.mul(simd.abs(inverse), slack_distance), simd.mul(simd.abs(offset), simd.splat(gamma(4))));
+                let slack = simd.add(slack, simd.splat(f32::MIN_POSITIVE));
                 store(simd, &mut rays.inverse[axis], group, inverse);
                 store(simd, &mut rays.near_offset[axis], group, simd.add(offset, slack));
                 store(simd, &mut rays.far_offset[axis], group, simd.sub(offset, slack));
@@ -548,7 +549,7 @@ impl<S: Simd> Beam<S> {
             (a.min(b), a.max(b))
         };
         let inverse = |axis: usize| [simd.splat(ends(axis).0), simd.splat(ends(axis).1)];
-        let slack = |axis: usize| simd.splat(slack_distance * ends(axis).1);
+        let slack = |axis: usize| simd.splat(slack_distance * ends(axis).1 + f32::MIN_POSITIVE);
         Self {
             near_side: [side(0), side(1), side(2)],
             sign: [simd.splat(sign(0)), simd.splat(sign(1)), simd.splat(sign(2))],

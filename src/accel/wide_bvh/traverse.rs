@@ -93,16 +93,15 @@ where
                 let boxes = Oblique::new(slabs);
                 let best = Best::none(&ray);
                 // What is to be made ready for leaves, a ray that misses all need not pay for.
-                let Some(start) = Start::at_root(simd, bvh, &boxes, best.t_max()) else {
-                    let mut tally = Q::Tally::default();
-                    tally.visit_node();
-                    return then(None, tally);
-                };
+                let mut tally = Q::Tally::default();
+                tally.visit_node();
+                let Some(start) = Start::at_root(simd, bvh, &boxes, best.t_max()) else { return then(None, tally) };
                 let mut stack = Aligned(Stack::new_const());
                 let leaves = F::Test::new::<P>(bvh, &ray);
                 // See `Walk::run`.
                 black_box(&leaves);
                 let mut walk = Walk::<Q, F, Best>::new(bvh, &leaves, &mut stack.0, best);
+                walk.tally = tally;
                 let found = walk.find::<P, S, _>(simd, &boxes, start);
                 then(found.map(|hit| hit.on_surface(&ray)), walk.tally)
             }
@@ -227,7 +226,8 @@ impl<'w, 'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'w, 'a, Q, F, K> {
 
     /// `None` where the ray meets nothing.
     #[inline(always)]
-    fn start<S: Simd>(&self, simd: S, boxes: &impl Boxes) -> Option<Start<S>> {
+    fn start<S: Simd>(&mut self, simd: S, boxes: &impl Boxes) -> Option<Start<S>> {
+        self.tally.visit_node();
         Start::at_root(simd, self.bvh, boxes, self.kept.t_max())
     }
 
@@ -245,7 +245,6 @@ impl<'w, 'a, Q: Query, F: LeafForm, K: Keep<F>> Walk<'w, 'a, Q, F, K> {
         let box_test = boxes.prepare(simd);
         let mut t_max = self.kept.t_max();
         let mut scaled_t_max = boxes.scale_time(t_max);
-        self.tally.visit_node();
         let root = &nodes[Child::ROOT.node_index()];
         let mut child = self.descend::<S, B>(simd, root, start.hits, start.enter);
         loop {

@@ -282,7 +282,7 @@ where
         let reach = (self.upper - origin).max(origin - self.lower).max_element();
         let slack_distance = gamma(24) * reach + f32::MIN_POSITIVE;
         let offset = origin * inverse;
-        let slack = inverse.abs() * slack_distance + offset.abs() * gamma(4);
+        let slack = inverse.abs() * slack_distance + offset.abs() * gamma(4) + f32::MIN_POSITIVE;
         let sides = inverse.is_negative_bitmask();
         let inverse_array = inverse.to_array();
         // Adding 0 makes 0 of -0, whose bits are those of a negative number.
