@@ -60,8 +60,8 @@ const FRAME: &str = "9vectorize5frame";
 /// The same for many rays: what is called there once a run or a packet is no matter, and it may call most things.
 const BATCH_FRAME: &str = "15vectorize_batch5frame";
 
-/// What a kernel may call: other frames, what few triangles reach (out of line for that), what rays along planes need
-/// once, and what panics.
+/// What a kernel may call: other frames, what few triangles reach (out of line for that), what few hits' ids need, what rays along
+/// planes need once, and what panics.
 const MAY_BE_CALLED: [&str; 13] = [
     FRAME,
     ROOTS,
