@@ -60,6 +60,11 @@ impl Simd for Avx512 {
         fn third_first(a: __m256d) -> __m256d;
         fn values3(a: __m256d) -> [f64; 3];
         fn beyond3(a: __m256d, bound: f64) -> bool;
+        fn sort_descending(a: __m256) -> __m256;
+        fn compress_lanes(a: __m256, mask: u32) -> __m256;
+        fn order_two(a: __m256) -> __m256;
+        fn gather(values: &[u32; LANES], by: __m256) -> [u32; LANES];
+        fn compress(values: &[u32; LANES], mask: u32) -> [u32; LANES];
     }
 
     #[inline(always)]
