@@ -2,6 +2,7 @@
 
 use std::arch::x86_64::*;
 
+use super::floats::Pair;
 use super::{LANES, Simd, SimdKernel};
 
 /// Proof that the CPU has AVX2 and FMA, and the operations on bits that came with them.
@@ -23,6 +24,7 @@ impl Avx2 {
 impl Simd for Avx2 {
     type F32x8 = __m256;
     type F64x3 = __m256d;
+    type Sixteen = Pair<Self>;
 
     frames!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 
@@ -266,5 +268,47 @@ impl Simd for Avx2 {
         let by = unsafe { _mm256_cvtepu8_epi32(_mm_loadl_epi64(lanes.as_ptr().cast())) };
         // SAFETY: the token proves that the CPU has AVX.
         self.gather(values, unsafe { _mm256_castsi256_ps(by) })
+    }
+
+    #[inline(always)]
+    fn transpose_eights(self, [a, b, c, d, e, f, g, h]: [__m256; LANES]) -> [__m256; LANES] {
+        // SAFETY: the token proves that the CPU has AVX.
+        unsafe {
+            // Halves of two rows each, then of four, then of eight.
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            let (ef, gh) = (_mm256_unpacklo_ps(e, f), _mm256_unpacklo_ps(g, h));
+            let (ef_high, gh_high) = (_mm256_unpackhi_ps(e, f), _mm256_unpackhi_ps(g, h));
+            let upper = [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
+            ];
+            let lower = [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ef, gh),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ef, gh),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ef_high, gh_high),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ef_high, gh_high),
+            ];
+            let first = |at: usize| _mm256_permute2f128_ps::<0x20>(upper[at], lower[at]);
+            let second = |at: usize| _mm256_permute2f128_ps::<0x31>(upper[at], lower[at]);
+            [first(0), first(1), first(2), first(3), second(0), second(1), second(2), second(3)]
+        }
+    }
+
+    #[inline(always)]
+    fn blend(self, a: __m256, b: __m256, mask: u32) -> __m256 {
+        // SAFETY: the token proves that the CPU has AVX2.
+        unsafe {
+            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let set = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bits), bits);
+            _mm256_blendv_ps(a, b, _mm256_castsi256_ps(set))
+        }
+    }
+
+    #[inline(always)]
+    fn sixteen(self) -> Pair<Self> {
+        Pair(self)
     }
 }

@@ -100,10 +100,68 @@ macro_rules! plain_doubles {
     };
 }
 
+/// Orders of lanes on plain arrays.
+macro_rules! plain_orders {
+    () => {
+        #[inline(always)]
+        fn sort_descending(self, a: Self::F32x8) -> Self::F32x8 {
+            let mut bits = self.store(a).map(|value| value.to_bits() as i32);
+            for end in 1..LANES {
+                for at in (0..end).rev() {
+                    let (upper, lower) = (bits[at], bits[at + 1]);
+                    (bits[at], bits[at + 1]) = (upper.max(lower), upper.min(lower));
+                }
+            }
+            self.load(&bits.map(|bits| f32::from_bits(bits as u32)))
+        }
+
+        #[inline(always)]
+        fn gather(self, values: &[u32; LANES], by: Self::F32x8) -> [u32; LANES] {
+            self.store(by).map(|lane| values[lane.to_bits() as usize % LANES])
+        }
+
+        #[inline(always)]
+        fn compress_lanes(self, a: Self::F32x8, mask: u32) -> Self::F32x8 {
+            let values = self.store(a);
+            self.load(&super::COMPRESSED[mask as usize & 0xFF].map(|lane| values[usize::from(lane) % LANES]))
+        }
+
+        #[inline(always)]
+        fn order_two(self, a: Self::F32x8) -> Self::F32x8 {
+            let mut values = self.store(a);
+            if (values[0].to_bits() as i32) < values[1].to_bits() as i32 {
+                values.swap(0, 1);
+            }
+            self.load(&values)
+        }
+
+        #[inline(always)]
+        fn compress(self, values: &[u32; LANES], mask: u32) -> [u32; LANES] {
+            super::COMPRESSED[mask as usize & 0xFF].map(|lane| values[usize::from(lane) % LANES])
+        }
+
+        #[inline(always)]
+        fn transpose_eights(self, rows: [Self::F32x8; LANES]) -> [Self::F32x8; LANES] {
+            let rows = rows.map(|row| self.store(row));
+            std::array::from_fn(|column| self.load(&rows.map(|row| row[column])))
+        }
+
+        #[inline(always)]
+        fn blend(self, a: Self::F32x8, b: Self::F32x8, mask: u32) -> Self::F32x8 {
+            let (mut a, b) = (self.store(a), self.store(b));
+            for lane in 0..LANES {
+                a[lane] = if mask >> lane & 1 == 1 { b[lane] } else { a[lane] };
+            }
+            self.load(&a)
+        }
+    };
+}
+
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod floats;
 mod isa;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
@@ -115,6 +173,7 @@ mod tests;
 pub(crate) use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx512::Avx512;
+pub(crate) use floats::{Eight, Floats, SIXTEEN, Sixteen};
 pub(crate) use isa::DetectedIsa;
 pub use isa::Isa;
 pub(crate) use scalar::Scalar;
@@ -149,6 +208,8 @@ pub(crate) trait Simd: Copy + Send + Sync {
     fn load(self, values: &[f32; LANES]) -> Self::F32x8;
     /// The first, second and third values of eight fours, in a register each.
     fn transpose(self, fours: [&[f32; 4]; LANES]) -> [Self::F32x8; 3];
+    /// Eight rows become columns.
+    fn transpose_eights(self, rows: [Self::F32x8; LANES]) -> [Self::F32x8; LANES];
     fn store(self, a: Self::F32x8) -> [f32; LANES];
     fn add(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     fn sub(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
@@ -194,46 +255,21 @@ pub(crate) trait Simd: Copy + Send + Sync {
 
     /// Descending, the bits taken for signed integers: floats that are not negative in their order, negative ones
     /// after them in any.
-    #[inline(always)]
-    fn sort_descending(self, a: Self::F32x8) -> Self::F32x8 {
-        let mut bits = self.store(a).map(|value| value.to_bits() as i32);
-        for end in 1..LANES {
-            for at in (0..end).rev() {
-                let (upper, lower) = (bits[at], bits[at + 1]);
-                (bits[at], bits[at + 1]) = (upper.max(lower), upper.min(lower));
-            }
-        }
-        self.load(&bits.map(|bits| f32::from_bits(bits as u32)))
-    }
-
+    fn sort_descending(self, a: Self::F32x8) -> Self::F32x8;
     /// The value that the low three bits of each lane name.
-    #[inline(always)]
-    fn gather(self, values: &[u32; LANES], by: Self::F32x8) -> [u32; LANES] {
-        self.store(by).map(|lane| values[lane.to_bits() as usize % LANES])
-    }
-
+    fn gather(self, values: &[u32; LANES], by: Self::F32x8) -> [u32; LANES];
     /// The lanes whose bit is set in the mask, in their order, then the last of them again.
-    #[inline(always)]
-    fn compress_lanes(self, a: Self::F32x8, mask: u32) -> Self::F32x8 {
-        let values = self.store(a);
-        self.load(&COMPRESSED[mask as usize & 0xFF].map(|lane| values[usize::from(lane) % LANES]))
-    }
-
+    fn compress_lanes(self, a: Self::F32x8, mask: u32) -> Self::F32x8;
     /// The first two lanes in descending order, as by [`Simd::sort_descending`].
-    #[inline(always)]
-    fn order_two(self, a: Self::F32x8) -> Self::F32x8 {
-        let mut values = self.store(a);
-        if (values[0].to_bits() as i32) < values[1].to_bits() as i32 {
-            values.swap(0, 1);
-        }
-        self.load(&values)
-    }
-
+    fn order_two(self, a: Self::F32x8) -> Self::F32x8;
     /// The values whose bit is set in the mask, in their order; what follows them has no meaning.
-    #[inline(always)]
-    fn compress(self, values: &[u32; LANES], mask: u32) -> [u32; LANES] {
-        COMPRESSED[mask as usize & 0xFF].map(|lane| values[usize::from(lane) % LANES])
-    }
+    fn compress(self, values: &[u32; LANES], mask: u32) -> [u32; LANES];
+    /// Of `b` the lanes whose bit is set in the mask, of `a` the others.
+    fn blend(self, a: Self::F32x8, b: Self::F32x8, mask: u32) -> Self::F32x8;
+
+    /// The same operations on sixteen floats.
+    type Sixteen: Sixteen;
+    fn sixteen(self) -> Self::Sixteen;
 }
 
 /// For each mask the lanes whose bit is set, in their order, then the last of them again.
@@ -266,16 +302,5 @@ pub(crate) fn prefetch_lines<const COUNT: usize>(address: *const u8) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         // SAFETY: a prefetch has no effect that a program can see, wherever it points.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast::<i8>().wrapping_add(64 * line)) };
-    }
-}
-
-/// Asks for a value's cache lines ahead of its use.
-#[inline(always)]
-pub(crate) fn prefetch<T>(value: &T) {
-    #[cfg(target_arch = "x86_64")]
-    for line in (0..size_of::<T>()).step_by(64) {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: a prefetch has no effect that a program can see, wherever it points.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>((&raw const *value).cast::<i8>().wrapping_add(line)) };
     }
 }

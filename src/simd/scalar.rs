@@ -1,5 +1,6 @@
 //! Plain arrays, which a compiler can vectorise for whatever CPU it compiles for.
 
+use super::floats::Pair;
 use super::{LANES, Simd, SimdKernel};
 
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +26,7 @@ fn mask(a: [f32; LANES], b: [f32; LANES], holds: impl Fn(f32, f32) -> bool) -> u
 impl Simd for Scalar {
     type F32x8 = [f32; LANES];
     type F64x3 = [f64; 3];
+    type Sixteen = Pair<Self>;
 
     #[inline(always)]
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
@@ -51,6 +53,13 @@ impl Simd for Scalar {
     }
 
     plain_doubles!();
+
+    plain_orders!();
+
+    #[inline(always)]
+    fn sixteen(self) -> Pair<Self> {
+        Pair(self)
+    }
 
     #[inline(always)]
     fn splat(self, value: f32) -> [f32; LANES] {

@@ -2,6 +2,7 @@
 
 use std::arch::x86_64::*;
 
+use super::floats::Pair;
 use super::{LANES, Simd, SimdKernel};
 
 /// Proof that the CPU has SSE4.2.
@@ -29,10 +30,18 @@ fn mask(bits: [__m128; 2]) -> u32 {
 impl Simd for Sse42 {
     type F32x8 = [__m128; 2];
     type F64x3 = [f64; 3];
+    type Sixteen = Pair<Self>;
 
     frames!(Sse42, "sse4.2");
 
     plain_doubles!();
+
+    plain_orders!();
+
+    #[inline(always)]
+    fn sixteen(self) -> Pair<Self> {
+        Pair(self)
+    }
 
     #[inline(always)]
     fn splat(self, value: f32) -> [__m128; 2] {

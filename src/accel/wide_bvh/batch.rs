@@ -5,7 +5,8 @@ use std::marker::PhantomData;
 use std::time::Instant;
 
 use super::WideBvh;
-use super::packet::{Coherent, PACKET, Packet};
+use super::coherent::{Coherent, PACKET};
+use super::packet::Packet;
 use super::wavefront::{self, Flight};
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Aabb, PrecisionMode, Ray};
@@ -17,8 +18,9 @@ const LEAST_BYTES: usize = if cfg!(debug_assertions) { 1 } else { 2 << 20 };
 /// The fewest rays of a run for which the wavefront's memory is asked for.
 const LEAST_RAYS: usize = 2 * wavefront::IN_FLIGHT;
 
-/// How many rays pass before some are looked at as a packet again: after others that went different ways, and at first
-/// after a packet that did not pay.
+/// The most rays that pass by after some that went different ways before some are looked at as a packet again, and that
+/// show at first how long they take. A single refusal costs no more than its rays: a row of an image has one where the camera looks
+/// along an axis.
 const LOOK_AGAIN: usize = 64;
 /// The most rays that pass by after packets that did not pay.
 const MOST_PATIENCE: usize = 64 * LOOK_AGAIN;
@@ -69,40 +71,44 @@ impl Choice {
     }
 }
 
-/// How long rays take that no packet answers.
+/// How long rays take that no packet answers, in this stretch; while that has few, in the one before.
 struct Pace {
     since: Instant,
+    /// Whether there was any work since then.
+    is_running: bool,
+    seconds: f64,
+    /// How many were answered: what is in flight has its work before it.
     rays: usize,
     seconds_per_ray: f64,
-    /// Of this stretch.
-    stretch_seconds: f64,
-    stretch_rays: usize,
 }
 
 impl Pace {
     fn new() -> Self {
-        Self { since: Instant::now(), rays: 0, seconds_per_ray: 0.0, stretch_seconds: 0.0, stretch_rays: 0 }
+        Self { since: Instant::now(), is_running: false, seconds: 0.0, rays: 0, seconds_per_ray: f64::INFINITY }
     }
 
-    /// Of the rays since the last look, if there were any.
-    fn look(&mut self) {
-        if self.rays != 0 {
-            let now = Instant::now();
-            let seconds = (now - self.since).as_secs_f64();
-            self.seconds_per_ray = seconds / self.rays as f64;
-            self.stretch_seconds += seconds;
-            self.stretch_rays += self.rays;
-            (self.since, self.rays) = (now, 0);
+    /// Before a packet.
+    fn pause(&mut self) {
+        if self.is_running {
+            self.is_running = false;
+            self.look();
         }
     }
 
-    /// Of the whole stretch, with what its last rays took after they were looked at; another begins.
-    fn end_stretch(&mut self) -> f64 {
-        self.look();
+    fn look(&mut self) {
         let now = Instant::now();
-        let seconds = self.stretch_seconds + (now - self.since).as_secs_f64();
-        let pace = seconds / self.stretch_rays as f64;
-        (self.since, self.stretch_seconds, self.stretch_rays) = (now, 0.0, 0);
+        self.seconds += (now - self.since).as_secs_f64();
+        self.since = now;
+        if self.rays >= LOOK_AGAIN / 2 {
+            self.seconds_per_ray = self.seconds / self.rays as f64;
+        }
+    }
+
+    /// Of the whole stretch, if packets left any of it; another begins.
+    fn end_stretch(&mut self) -> Option<f64> {
+        self.look();
+        let pace = (self.rays != 0).then(|| self.seconds / self.rays as f64);
+        (self.is_running, self.seconds, self.rays) = (false, 0.0, 0);
         pace
     }
 }
@@ -118,7 +124,7 @@ pub(super) struct Source<'a, R, T, N> {
     left: usize,
     /// How many rays are left of those that are not looked at as packets.
     refused: usize,
-    /// How many rays to pass by after the next packet that is given up, or does not pay.
+    /// How many rays to pass by after the next packet that does not pay.
     patience: usize,
     /// Whether the refused rays go the same way all the same: such are faster one by one than in flight.
     are_coherent: bool,
@@ -139,7 +145,7 @@ where
             is_at_end: false,
             left: 0,
             refused: LOOK_AGAIN,
-            patience: LOOK_AGAIN,
+            patience: PACKET,
             are_coherent: false,
             others: Pace::new(),
         }
@@ -173,42 +179,45 @@ where
         (self.rays, self.answers) = (rays, answers);
         self.left -= 1;
         self.refused = self.refused.saturating_sub(1);
-        self.others.rays += 1;
+        self.others.is_running = true;
         Some((ray, answer))
     }
 
-    /// The next rays if they look like a packet, and their places. After some that do not, others pass by first. Looks before at how
-    /// long rays take without.
+    /// Another ray is answered that no packet took.
     #[inline(always)]
-    fn next_packet(&mut self, simd: impl Simd, bounds: &Aabb) -> Option<(&'a [R; PACKET], Coherent, &mut [T; PACKET])> {
-        if self.refused != 0 || !self.has_rays() {
-            return None;
-        }
-        self.others.look();
-        (self.refused, self.are_coherent) = (LOOK_AGAIN, false);
-        let rays = self.rays.first_chunk::<PACKET>()?;
-        let coherent = Coherent::of(simd, rays, bounds)?;
-        self.refused = 0;
-        Some((rays, coherent, self.answers.first_chunk_mut()?))
+    pub(super) fn count_answered(&mut self) {
+        self.others.rays += 1;
     }
 
-    /// After an attempt at a packet: goes past it if it was answered. If it was not, or took longer than its rays
-    /// would have alone, it leaves ever more of the rays that follow to the others.
+    /// Whether the next rays make a packet. After some that do not, others pass by first. Looks before at how long rays take without.
     #[inline(always)]
-    fn end_packet(&mut self, is_answered: bool) {
-        let start = std::mem::replace(&mut self.others.since, Instant::now());
-        if is_answered {
-            self.rays = &self.rays[PACKET..];
-            self.answers = &mut std::mem::take(&mut self.answers)[PACKET..];
+    fn take_packet(&mut self, simd: impl Simd, bounds: &Aabb, coherent: &mut Coherent) -> bool {
+        if self.refused != 0 || !self.has_rays() {
+            return false;
         }
-        let seconds_per_ray = (self.others.since - start).as_secs_f64() / PACKET as f64;
-        if is_answered && seconds_per_ray < self.others.seconds_per_ray {
-            (self.refused, self.patience) = (0, LOOK_AGAIN);
+        self.others.pause();
+        self.are_coherent = coherent.take(simd, self.rays, bounds);
+        if !self.are_coherent {
+            self.refused = self.patience.min(LOOK_AGAIN);
+            self.patience = self.patience.max(2 * self.refused);
+        }
+        self.are_coherent
+    }
+
+    /// After a packet of so many. If it took longer than its rays would have alone, ever more of those that follow are left to the
+    /// others.
+    #[inline(always)]
+    fn end_packet(&mut self, count: usize) {
+        let start = std::mem::replace(&mut self.others.since, Instant::now());
+        self.rays = &self.rays[count..];
+        self.answers = &mut std::mem::take(&mut self.answers)[count..];
+        let seconds_per_ray = (self.others.since - start).as_secs_f64() / count as f64;
+        if seconds_per_ray < self.others.seconds_per_ray {
+            self.patience = PACKET;
         } else {
             self.refused = self.patience;
             self.patience = (2 * self.patience).min(MOST_PATIENCE);
         }
-        self.are_coherent = true;
     }
 
     /// Answers the next rays in packets, as long as those pay.
@@ -246,9 +255,12 @@ where
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { bvh, source, answer, .. } = self;
-        while let Some((rays, coherent, places)) = source.next_packet(simd, &bvh.bounds) {
-            let is_answered = Packet::<Q, P, _, _, _>::new(bvh, rays, &coherent, places, answer).run(simd);
-            source.end_packet(is_answered);
+        let mut coherent = Coherent::NONE;
+        while source.take_packet(simd, &bvh.bounds, &mut coherent) {
+            let count = coherent.count;
+            let (rays, places) = (&source.rays[..count], &mut source.answers[..count]);
+            Packet::<Q, P, _, _, _>::new(bvh, rays, &coherent, places, answer).run(simd);
+            source.end_packet(count);
         }
     }
 }
@@ -304,7 +316,7 @@ where
                 answer_alone::<Q, P, S, _, _, _>(simd, bvh, &mut source, has_packets, &answer);
             }
             let pace = source.others.end_stretch();
-            if flies {
+            if flies && let Some(pace) = pace {
                 choice.go_on(pace);
             }
         }
@@ -329,5 +341,6 @@ fn answer_alone<'a, Q: Query, P: PrecisionMode, S: Simd, R, T, N>(
         }
         let Some((ray, place)) = source.next() else { return };
         answer(place, bvh.find::<Q, P, S>(simd, ray.into()).0);
+        source.count_answered();
     }
 }

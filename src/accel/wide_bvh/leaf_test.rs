@@ -8,11 +8,12 @@ use glam::{Vec4, Vec4Swizzles};
 use super::WideBvh;
 use super::leaves::{LeafForm, LeafRows, LeafTriangles, TriangleForm};
 use super::node::Child;
+use super::spans::{Corners, shear, size_across, weights};
 use crate::accel::Primitive;
 use crate::accel::leaf::{ClosestHit, Query};
 use crate::geometry::{Evaluation, Interval, PrecisionMode, Ray, TriangleHit, TriangleRay, edge_slack, least_doubt};
 use crate::math::UNIT_ROUNDOFF;
-use crate::simd::Simd;
+use crate::simd::{Eight, Simd};
 
 /// A ray made ready for what leaves of a form hold.
 pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
@@ -42,9 +43,6 @@ pub(crate) struct TriangleTest<'a, F> {
     /// See [`edge_slack`] and [`least_doubt`]; for exact decisions alone.
     edge_slack: [f32; 2],
 }
-
-/// A coordinate of the three vertices of eight triangles.
-pub(super) type Corners<S> = [<S as Simd>::F32x8; 3];
 
 /// The best hit so far.
 #[derive(Clone, Copy)]
@@ -228,17 +226,16 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         let z = from_origin(simd, &rows, kz, simd.splat(ray.origin[2]));
         let x = from_origin(simd, &rows, kx, simd.splat(ray.origin[0]));
         let y = from_origin(simd, &rows, ky, simd.splat(ray.origin[1]));
-        let x = shear(simd, x, simd.splat(ray.per_z[0]), z);
-        let y = shear(simd, y, simd.splat(ray.per_z[1]), z);
-        let a = edge(simd, x[2], y[1], y[2], x[1]);
-        let b = edge(simd, x[0], y[2], y[0], x[2]);
-        let c = edge(simd, x[1], y[0], y[1], x[0]);
+        let eight = Eight(simd);
+        let x = shear(eight, x, simd.splat(ray.per_z[0]), z);
+        let y = shear(eight, y, simd.splat(ray.per_z[1]), z);
+        let [a, b, c] = weights(eight, &[x, y, z]);
         let zero = simd.splat(0.0);
         // A NaN may lose a sign here, which refuses less.
         let (least, most) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
         let doubt = if P::IS_EXACT {
             let [slack, least_doubt] = self.edge_slack.map(|slack| simd.splat(slack));
-            simd.mul_add(size_across(simd, &x, &y), slack, least_doubt)
+            simd.mul_add(size_across(eight, &x, &y), slack, least_doubt)
         } else {
             zero
         };
@@ -315,13 +312,6 @@ fn precedes<F: LeafForm, P: PrecisionMode>(
     b.leaf == Child::NONE || a.primitive(bvh).precedes::<P>(&b.primitive(bvh), ray)
 }
 
-/// The sum of the magnitudes of sheared coordinates: see [`edge_slack`].
-#[inline(always)]
-pub(super) fn size_across<S: Simd>(simd: S, x: &Corners<S>, y: &Corners<S>) -> S::F32x8 {
-    let (a, b) = (simd.add(simd.abs(x[0]), simd.abs(x[1])), simd.add(simd.abs(y[0]), simd.abs(y[1])));
-    simd.add(simd.add(a, b), simd.add(simd.abs(x[2]), simd.abs(y[2])))
-}
-
 /// The largest distance along an axis from the ray's origin to a corner of the scene.
 #[inline(always)]
 fn reach_from([lower, upper]: &[Vec4; 2], ray: &Ray) -> f32 {
@@ -331,22 +321,7 @@ fn reach_from([lower, upper]: &[Vec4; 2], ray: &Ray) -> f32 {
 }
 
 #[inline(always)]
-fn from_origin<S: Simd>(simd: S, leaf: &impl LeafRows, axis: usize, origin: S::F32x8) -> Corners<S> {
+fn from_origin<S: Simd>(simd: S, leaf: &impl LeafRows, axis: usize, origin: S::F32x8) -> Corners<Eight<S>> {
     let [a, b, c] = leaf.rows(axis);
     [simd.sub(simd.load(a), origin), simd.sub(simd.load(b), origin), simd.sub(simd.load(c), origin)]
-}
-
-#[inline(always)]
-fn shear<S: Simd>(simd: S, row: Corners<S>, slope: S::F32x8, z: Corners<S>) -> Corners<S> {
-    [
-        simd.sub(row[0], simd.mul(slope, z[0])),
-        simd.sub(row[1], simd.mul(slope, z[1])),
-        simd.sub(row[2], simd.mul(slope, z[2])),
-    ]
-}
-
-/// `a * b - c * d`.
-#[inline(always)]
-fn edge<S: Simd>(simd: S, a: S::F32x8, b: S::F32x8, c: S::F32x8, d: S::F32x8) -> S::F32x8 {
-    simd.sub(simd.mul(a, b), simd.mul(c, d))
 }

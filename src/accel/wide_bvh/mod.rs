@@ -5,7 +5,9 @@
 //! multi-branching BVHs".
 
 mod batch;
+mod beam;
 mod box_test;
+mod coherent;
 mod collapse;
 mod collect;
 mod compact_leaves;
@@ -13,6 +15,7 @@ mod leaf_test;
 mod leaves;
 mod node;
 mod packet;
+mod spans;
 mod sphere_leaves;
 #[cfg(test)]
 mod tests;

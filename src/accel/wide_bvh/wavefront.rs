@@ -11,13 +11,13 @@ use glam::Vec3A;
 
 use super::WideBvh;
 use super::batch::Source;
-use super::leaf_test::{Corners, size_across};
 use super::leaves::{Leaf, LeafRows, LeafTriangles};
 use super::node::{Child, WideNode};
+use super::spans::{Corners, Signs, Spans, shear, spans, weights};
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, least_doubt, settled};
-use crate::math::{UNIT_ROUNDOFF, gamma};
-use crate::simd::{LANES, Simd};
+use crate::geometry::{HITS, HitLanes, Interval, PrecisionMode, Ray, TriangleRay, edge_slack, settled};
+use crate::math::gamma;
+use crate::simd::{Eight, LANES, Simd};
 
 /// How many rays are in flight. With 16 or 64 a batch of random rays among 871 thousand triangles takes as long or up
 /// to 5 % longer.
@@ -269,6 +269,7 @@ where
                 return true;
             }
             (self.answer)(place, self.bvh.find::<Q, P, S>(simd, ray).0);
+            self.source.count_answered();
         }
     }
 
@@ -373,11 +374,12 @@ where
             let leaf = self.bvh.leaves.leaf(child.triangles());
             let ray = &self.leaves[id];
             let sheared = sheared(simd, ray, &leaf);
-            let weights = weights(simd, &sheared);
-            let signs = Signs::of::<P, S>(simd, &sheared, &weights, ray.edge_slack);
+            let eight = Eight(simd);
+            let weights = weights(eight, &sheared);
+            let signs = Signs::of::<P, _>(eight, &sheared, &weights, ray.edge_slack);
             let candidates = leaf.mask() & !signs.differ;
             if candidates != 0 {
-                let spans = spans::<P, S>(simd, &sheared, &weights, signs, simd.splat(ray.inverse_depth));
+                let spans = spans::<P, _>(eight, &sheared, &weights, signs, simd.splat(ray.inverse_depth));
                 if self.keep_candidates::<Q, P, S>(simd, id, &leaf, candidates, &spans) {
                     // Nothing is left to do for it.
                     self.boxes[id].top = LANES as u32;
@@ -395,11 +397,11 @@ where
         id: usize,
         leaf: &Leaf<'_>,
         candidates: u32,
-        spans: &Spans<S>,
+        spans: &Spans<Eight<S>>,
     ) -> bool {
         let child = self.boxes[id].child;
         let (ray, slot) = (&mut self.leaves[id], &mut self.slots[id]);
-        let mut left = candidates & spans.within(simd, simd.splat(ray.t_min), simd.splat(ray.farthest));
+        let mut left = candidates & spans.within(Eight(simd), simd.splat(ray.t_min), simd.splat(ray.farthest));
         if left == 0 {
             return false;
         }
@@ -507,6 +509,7 @@ where
     fn finish<Q: Query, P: PrecisionMode>(&mut self, id: usize) {
         let (ray, slot) = (&mut self.leaves[id], &mut self.slots[id]);
         let Some(place) = slot.answer.take() else { return };
+        self.source.count_answered();
         if Q::FIRST_HIT_ENDS {
             let is_hit = ray.pending.is_some() || slot.best.found().is_some();
             (self.answer)(place, is_hit.then_some(slot.best));
@@ -562,143 +565,18 @@ fn slab<S: Simd>(simd: S, ray: &BoxRay, node: &WideNode, axis: usize) -> (S::F32
 
 /// The vertices of eight triangles, sheared so that the ray is the z axis.
 #[inline(always)]
-fn sheared<S: Simd>(simd: S, ray: &LeafRay, leaf: &Leaf<'_>) -> [Corners<S>; 3] {
+fn sheared<S: Simd>(simd: S, ray: &LeafRay, leaf: &Leaf<'_>) -> [Corners<Eight<S>>; 3] {
     let [kx, ky, kz] = [ray.axes[0] as usize, ray.axes[1] as usize, ray.axes[2] as usize];
     let z = from_origin(simd, leaf, kz, ray.origin[2]);
-    let x = shear(simd, from_origin(simd, leaf, kx, ray.origin[0]), simd.splat(ray.shear[0]), z);
-    let y = shear(simd, from_origin(simd, leaf, ky, ray.origin[1]), simd.splat(ray.shear[1]), z);
+    let eight = Eight(simd);
+    let x = shear(eight, from_origin(simd, leaf, kx, ray.origin[0]), simd.splat(ray.shear[0]), z);
+    let y = shear(eight, from_origin(simd, leaf, ky, ray.origin[1]), simd.splat(ray.shear[1]), z);
     [x, y, z]
 }
 
-/// Rounding keeps order: the difference of two rounded products has the right sign or is zero. So weights that differ
-/// in sign refuse a triangle, and three of one sign, none zero, accept it.
 #[inline(always)]
-pub(super) fn weights<S: Simd>(simd: S, [x, y, _]: &[Corners<S>; 3]) -> Corners<S> {
-    [edge(simd, x[2], y[1], y[2], x[1]), edge(simd, x[0], y[2], y[0], x[2]), edge(simd, x[1], y[0], y[1], x[0])]
-}
-
-/// The triangles whose weights differ in sign, and those of which all have the same one; for exact decisions beyond doubt.
-#[derive(Clone, Copy)]
-pub(super) struct Signs {
-    pub(super) differ: u32,
-    agree: u32,
-}
-
-impl Signs {
-    /// See [`edge_slack`] for the slack.
-    #[inline(always)]
-    pub(super) fn of<P: PrecisionMode, S: Simd>(
-        simd: S,
-        [x, y, _]: &[Corners<S>; 3],
-        &[a, b, c]: &Corners<S>,
-        edge_slack: f32,
-    ) -> Self {
-        let zero = simd.splat(0.0);
-        let (least, greatest) = (simd.min(a, simd.min(b, c)), simd.max(a, simd.max(b, c)));
-        // Above zero where all have one sign, below where two differ.
-        let agreement = simd.max(least, simd.sub(zero, greatest));
-        if !P::IS_EXACT {
-            return Self { differ: simd.less(agreement, zero), agree: simd.less(zero, agreement) };
-        }
-        let (slack, least) = (simd.splat(edge_slack), simd.splat(least_doubt(edge_slack)));
-        let doubt = simd.mul_add(size_across(simd, x, y), slack, least);
-        Self { differ: simd.less(simd.add(agreement, doubt), zero), agree: simd.less(doubt, agreement) }
-    }
-}
-
-/// What `f32` can tell of where a ray meets eight triangles.
-pub(super) struct Spans<S: Simd> {
-    /// The triangles that the ray's line certainly meets.
-    pub(super) certain: u32,
-    /// The `t` of a hit on a triangle lies between the two, however it is evaluated.
-    pub(super) from: S::F32x8,
-    pub(super) to: S::F32x8,
-}
-
-impl<S: Simd> Spans<S> {
-    #[inline(always)]
-    pub(super) fn within(&self, simd: S, t_min: S::F32x8, t_max: S::F32x8) -> u32 {
-        simd.less_or_equal(t_min, self.to) & simd.less_or_equal(self.from, t_max)
-    }
-}
-
-/// Every evaluation of a hit gives a point of the triangle, so `t` lies between those of the vertices, but for
-/// roundings: with `u = 2^-24` and relative to the largest of the three, 3u for each of these (the difference, the
-/// inverse, the product), u for the hit's, 2^-30 for evaluation in `f64` (`evaluation.rs`), and u for adding the slack:
-/// less than `gamma(8)`.
-///
-/// Closer bounds come from the weights, where `t` [follows them](PrecisionMode::FOLLOWS_WEIGHTS). Of the sheared vertices let `s = sum(|x| + |y|)`, `n` the largest of these,
-/// and `m` the largest `|z|`. Before the shear no coordinate exceeds `n + m`, so the sheared ones are off by
-/// `e = 2 u (n + m) + 4 u m` at most (`triangle_hit.rs`), which moves the three weights by `2 e s + 6 e^2` together;
-/// and their own roundings by `u s^2 / 2`. Weights that move by d together move the depth that they interpolate, where
-/// their sum is w, by no more than `2 d / w` of the range of the depths; or else by no more than that range, which
-/// this then exceeds. The interpolation's own roundings add less than `24 u m`. The factors below are a little larger
-/// for the roundings of the bound itself; absolute terms cover underflow.
-#[inline(always)]
-pub(super) fn spans<P: PrecisionMode, S: Simd>(
-    simd: S,
-    &[x, y, z]: &[Corners<S>; 3],
-    &[a, b, c]: &Corners<S>,
-    signs: Signs,
-    inverse_depth: S::F32x8,
-) -> Spans<S> {
-    const LEAST_WEIGHT: f32 = 1.0 / (1u64 << 60) as f32;
-    const LEAST_DEPTH: f32 = LEAST_WEIGHT / (1 << 20) as f32;
-
-    let (nearest, farthest) = (simd.min(z[0], simd.min(z[1], z[2])), simd.max(z[0], simd.max(z[1], z[2])));
-    let most = simd.max(simd.abs(nearest), simd.abs(farthest));
-    let (x, y) = (abs3(simd, x), abs3(simd, y));
-    let sizes = [simd.add(x[0], y[0]), simd.add(x[1], y[1]), simd.add(x[2], y[2])];
-    let size = simd.add(sizes[0], simd.add(sizes[1], sizes[2]));
-    let largest = simd.max(simd.max(simd.max(x[0], y[0]), simd.max(x[1], y[1])), simd.max(x[2], y[2]));
-    let unit = |n: f32| simd.splat(n * UNIT_ROUNDOFF);
-    let sheared_error = simd.add(simd.mul(unit(2.25), largest), simd.mul(unit(6.5), most));
-    let weight_error = simd.add(
-        simd.mul(sheared_error, simd.add(simd.mul(simd.splat(4.25), size), simd.mul(simd.splat(13.0), sheared_error))),
-        simd.add(simd.mul(unit(1.25), simd.mul(size, size)), simd.splat(LEAST_WEIGHT)),
-    );
-    let inverse_sum = simd.div(simd.splat(1.0), simd.add(simd.add(a, b), c));
-    let weighted = simd.add(simd.add(simd.mul(a, z[0]), simd.mul(b, z[1])), simd.mul(c, z[2]));
-    let depth = simd.mul(weighted, inverse_sum);
-    let moved = simd.mul(simd.mul(weight_error, simd.abs(inverse_sum)), simd.sub(farthest, nearest));
-    let depth_error = simd.add(simd.add(moved, simd.mul(unit(24.0), most)), simd.splat(LEAST_DEPTH));
-
-    let (first, last) = (simd.mul(nearest, inverse_depth), simd.mul(farthest, inverse_depth));
-    let slack = simd
-        .add(simd.mul(simd.splat(gamma(8)), simd.max(simd.abs(first), simd.abs(last))), simd.splat(f32::MIN_POSITIVE));
-    let (from, to) = (simd.sub(simd.min(first, last), slack), simd.add(simd.max(first, last), slack));
-    if !P::FOLLOWS_WEIGHTS {
-        return Spans { certain: signs.agree, from, to };
-    }
-    let t = simd.mul(depth, inverse_depth);
-    let t_error = simd.mul(depth_error, simd.abs(inverse_depth));
-    // A NaN, from weights that are all zero, leaves the vertices' bounds.
-    Spans { certain: signs.agree, from: simd.max(simd.sub(t, t_error), from), to: simd.min(simd.add(t, t_error), to) }
-}
-
-#[inline(always)]
-fn abs3<S: Simd>(simd: S, a: Corners<S>) -> Corners<S> {
-    [simd.abs(a[0]), simd.abs(a[1]), simd.abs(a[2])]
-}
-
-#[inline(always)]
-fn from_origin<S: Simd>(simd: S, leaf: &Leaf<'_>, axis: usize, origin: f32) -> Corners<S> {
+fn from_origin<S: Simd>(simd: S, leaf: &Leaf<'_>, axis: usize, origin: f32) -> Corners<Eight<S>> {
     let origin = simd.splat(origin);
     let [a, b, c] = leaf.rows(axis);
     [simd.sub(simd.load(a), origin), simd.sub(simd.load(b), origin), simd.sub(simd.load(c), origin)]
-}
-
-#[inline(always)]
-pub(super) fn shear<S: Simd>(simd: S, row: Corners<S>, slope: S::F32x8, z: Corners<S>) -> Corners<S> {
-    [
-        simd.sub(row[0], simd.mul(slope, z[0])),
-        simd.sub(row[1], simd.mul(slope, z[1])),
-        simd.sub(row[2], simd.mul(slope, z[2])),
-    ]
-}
-
-/// `a * b - c * d`.
-#[inline(always)]
-fn edge<S: Simd>(simd: S, a: S::F32x8, b: S::F32x8, c: S::F32x8, d: S::F32x8) -> S::F32x8 {
-    simd.sub(simd.mul(a, b), simd.mul(c, d))
 }
