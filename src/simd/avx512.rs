@@ -33,6 +33,7 @@ impl Simd for Avx512 {
     type F32x8 = __m256;
     type F64x3 = __m256d;
     type Sixteen = Wide;
+    type ForSteps = Avx2;
 
     frames!(Avx512, "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw");
 
@@ -90,6 +91,12 @@ impl Simd for Avx512 {
     #[inline(always)]
     fn sixteen(self) -> Wide {
         Wide(self)
+    }
+
+    /// AVX2, with which rays in flight are 6 to 8 % faster (Xeon of 2023).
+    #[inline(always)]
+    fn for_steps(self) -> Avx2 {
+        self.0
     }
 }
 

@@ -270,6 +270,10 @@ pub(crate) trait Simd: Copy + Send + Sync {
     /// The same operations on sixteen floats.
     type Sixteen: Sixteen;
     fn sixteen(self) -> Self::Sixteen;
+
+    /// The instruction set for frames of many short steps.
+    type ForSteps: Simd;
+    fn for_steps(self) -> Self::ForSteps;
 }
 
 /// For each mask the lanes whose bit is set, in their order, then the last of them again.

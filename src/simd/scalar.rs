@@ -27,6 +27,7 @@ impl Simd for Scalar {
     type F32x8 = [f32; LANES];
     type F64x3 = [f64; 3];
     type Sixteen = Pair<Self>;
+    type ForSteps = Self;
 
     #[inline(always)]
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
@@ -59,6 +60,11 @@ impl Simd for Scalar {
     #[inline(always)]
     fn sixteen(self) -> Pair<Self> {
         Pair(self)
+    }
+
+    #[inline(always)]
+    fn for_steps(self) -> Self {
+        self
     }
 
     #[inline(always)]

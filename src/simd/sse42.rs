@@ -31,6 +31,7 @@ impl Simd for Sse42 {
     type F32x8 = [__m128; 2];
     type F64x3 = [f64; 3];
     type Sixteen = Pair<Self>;
+    type ForSteps = Self;
 
     frames!(Sse42, "sse4.2");
 
@@ -41,6 +42,11 @@ impl Simd for Sse42 {
     #[inline(always)]
     fn sixteen(self) -> Pair<Self> {
         Pair(self)
+    }
+
+    #[inline(always)]
+    fn for_steps(self) -> Self {
+        self
     }
 
     #[inline(always)]

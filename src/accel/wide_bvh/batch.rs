@@ -114,7 +114,9 @@ impl Pace {
 }
 
 /// Where rays come from: runs of rays with a place for each answer.
-pub(super) struct Source<'a, R, T, N> {
+pub(super) struct Source<'a, R, T, N, W> {
+    /// Of packets, and of rays that go alone.
+    simd: W,
     rays: &'a [R],
     answers: &'a mut [T],
     next_run: N,
@@ -131,14 +133,15 @@ pub(super) struct Source<'a, R, T, N> {
     others: Pace,
 }
 
-impl<'a, R, T, N> Source<'a, R, T, N>
+impl<'a, R, T, N, W: Simd> Source<'a, R, T, N, W>
 where
     for<'r> &'r R: Into<Ray>,
     N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
 {
     /// The first rays show how long they take without packets.
-    fn new(next_run: N) -> Self {
+    fn new(simd: W, next_run: N) -> Self {
         Self {
+            simd,
             rays: &[],
             answers: &mut [],
             next_run,
@@ -183,6 +186,19 @@ where
         Some((ray, answer))
     }
 
+    /// A ray by itself.
+    #[inline(always)]
+    pub(super) fn answer_alone<Q: Query, P: PrecisionMode>(
+        &mut self,
+        bvh: &WideBvh,
+        ray: Ray,
+        place: &mut T,
+        answer: &impl Fn(&mut T, Option<ClosestHit>),
+    ) {
+        answer(place, bvh.find::<Q, P, W>(self.simd, ray).0);
+        self.count_answered();
+    }
+
     /// Another ray is answered that no packet took.
     #[inline(always)]
     pub(super) fn count_answered(&mut self) {
@@ -222,27 +238,31 @@ where
 
     /// Answers the next rays in packets, as long as those pay.
     #[inline(always)]
-    pub(super) fn answer_packets<Q: Query, P: PrecisionMode, S: Simd>(
+    pub(super) fn answer_packets<Q: Query, P: PrecisionMode>(
         &mut self,
-        simd: S,
         bvh: &WideBvh,
         answer: &impl Fn(&mut T, Option<ClosestHit>),
     ) {
         if self.refused == 0 {
-            simd.vectorize_batch(Packets::<Q, P, _, _, _, _> { bvh, source: self, answer, choices: PhantomData });
+            self.simd.vectorize_batch(Packets::<Q, P, _, _, _, _, _> {
+                bvh,
+                source: self,
+                answer,
+                choices: PhantomData,
+            });
         }
     }
 }
 
 /// Packets as long as they pay, as a kernel.
-struct Packets<'b, 's, 'a, Q, P, R, T, N, A> {
+struct Packets<'b, 's, 'a, Q, P, R, T, N, W, A> {
     bvh: &'b WideBvh,
-    source: &'s mut Source<'a, R, T, N>,
+    source: &'s mut Source<'a, R, T, N, W>,
     answer: &'s A,
     choices: PhantomData<(Q, P)>,
 }
 
-impl<'a, Q, P, R, T, N, A> SimdKernel for Packets<'_, '_, 'a, Q, P, R, T, N, A>
+impl<'a, Q, P, R, T, N, W: Simd, A> SimdKernel for Packets<'_, '_, 'a, Q, P, R, T, N, W, A>
 where
     for<'r> &'r R: Into<Ray>,
     N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
@@ -266,24 +286,25 @@ where
 }
 
 /// The rays of one worker, as a kernel.
-pub(super) struct Batch<'b, 'a, Q, P, R, T, N, A> {
+pub(super) struct Batch<'b, 'a, Q, P, R, T, N, W, A> {
     bvh: &'b WideBvh,
-    source: Source<'a, R, T, N>,
+    source: Source<'a, R, T, N, W>,
     answer: A,
     choices: PhantomData<(Q, P)>,
 }
 
-impl<'b, 'a, Q, P, R, T, N, A> Batch<'b, 'a, Q, P, R, T, N, A>
+impl<'b, 'a, Q, P, R, T, N, W: Simd, A> Batch<'b, 'a, Q, P, R, T, N, W, A>
 where
     for<'r> &'r R: Into<Ray>,
     N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
 {
-    pub(super) fn new(bvh: &'b WideBvh, next_run: N, answer: A) -> Self {
-        Self { bvh, source: Source::new(next_run), answer, choices: PhantomData }
+    /// `simd` is for all but rays in flight.
+    pub(super) fn new(simd: W, bvh: &'b WideBvh, next_run: N, answer: A) -> Self {
+        Self { bvh, source: Source::new(simd, next_run), answer, choices: PhantomData }
     }
 }
 
-impl<'a, Q, P, R, T, N, A> SimdKernel for Batch<'_, 'a, Q, P, R, T, N, A>
+impl<'a, Q, P, R, T, N, W: Simd, A> SimdKernel for Batch<'_, 'a, Q, P, R, T, N, W, A>
 where
     for<'r> &'r R: Into<Ray>,
     N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
@@ -313,7 +334,7 @@ where
             if flies && choice.way == Way::InFlight {
                 Flight::new(bvh, &mut source, &answer, wavefront::stacks(&mut memory)).run::<Q, P, S>(simd);
             } else {
-                answer_alone::<Q, P, S, _, _, _>(simd, bvh, &mut source, has_packets, &answer);
+                answer_alone::<Q, P, _, _, _, _>(bvh, &mut source, has_packets, &answer);
             }
             let pace = source.others.end_stretch();
             if flies && let Some(pace) = pace {
@@ -325,10 +346,9 @@ where
 
 /// The rays of a stretch one by one, but for packets.
 #[inline(always)]
-fn answer_alone<'a, Q: Query, P: PrecisionMode, S: Simd, R, T, N>(
-    simd: S,
+fn answer_alone<'a, Q: Query, P: PrecisionMode, R, T, N, W: Simd>(
     bvh: &WideBvh,
-    source: &mut Source<'a, R, T, N>,
+    source: &mut Source<'a, R, T, N, W>,
     has_packets: bool,
     answer: &impl Fn(&mut T, Option<ClosestHit>),
 ) where
@@ -337,10 +357,9 @@ fn answer_alone<'a, Q: Query, P: PrecisionMode, S: Simd, R, T, N>(
 {
     loop {
         if has_packets {
-            source.answer_packets::<Q, P, S>(simd, bvh, answer);
+            source.answer_packets::<Q, P>(bvh, answer);
         }
         let Some((ray, place)) = source.next() else { return };
-        answer(place, bvh.find::<Q, P, S>(simd, ray.into()).0);
-        source.count_answered();
+        source.answer_alone::<Q, P>(bvh, ray.into(), place, answer);
     }
 }

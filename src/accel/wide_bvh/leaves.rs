@@ -276,7 +276,8 @@ impl LeafForm for ByAxis {
         R: 'r,
         T: 'r,
     {
-        accel.simd.vectorize_batch(Batch::<Q, P, _, _, _, _>::new(accel.bvh, next_run, answer));
+        let batch = Batch::<Q, P, _, _, _, _, _>::new(accel.simd, accel.bvh, next_run, answer);
+        accel.simd.for_steps().vectorize_batch(batch);
     }
 }
 

@@ -168,9 +168,9 @@ impl Stack {
 }
 
 /// The rays of a stretch, all but those that packets answer.
-pub(super) struct Flight<'b, 'a, 's, R, T, N, A> {
+pub(super) struct Flight<'b, 'a, 's, R, T, N, W, A> {
     bvh: &'b WideBvh,
-    source: &'s mut Source<'a, R, T, N>,
+    source: &'s mut Source<'a, R, T, N, W>,
     answer: &'s A,
     stacks: &'s mut [Stack; IN_FLIGHT],
     boxes: [BoxRay; IN_FLIGHT],
@@ -209,7 +209,7 @@ pub(super) fn stacks(memory: &mut Vec<Stack>) -> &mut [Stack; IN_FLIGHT] {
     memory.first_chunk_mut().expect("it was made so long")
 }
 
-impl<'b, 'a, 's, R, T, N, A> Flight<'b, 'a, 's, R, T, N, A>
+impl<'b, 'a, 's, R, T, N, W: Simd, A> Flight<'b, 'a, 's, R, T, N, W, A>
 where
     for<'r> &'r R: Into<Ray>,
     N: FnMut() -> Option<(&'a [R], &'a mut [T])>,
@@ -218,7 +218,7 @@ where
     #[inline(always)]
     pub(super) fn new(
         bvh: &'b WideBvh,
-        source: &'s mut Source<'a, R, T, N>,
+        source: &'s mut Source<'a, R, T, N, W>,
         answer: &'s A,
         stacks: &'s mut [Stack; IN_FLIGHT],
     ) -> Self {
@@ -242,7 +242,7 @@ where
     #[inline(always)]
     pub(super) fn run<Q: Query, P: PrecisionMode, S: Simd>(mut self, simd: S) {
         for id in 0..IN_FLIGHT {
-            if !self.feed::<Q, P, S>(simd, id) {
+            if !self.feed::<Q, P>(id) {
                 break;
             }
         }
@@ -252,24 +252,23 @@ where
             self.pop::<Q, P, S>(simd);
             let is_idle = self.lists[NODE].count + self.lists[LEAF].count == 0;
             while self.lists[EVALUATE].count >= HITS || is_idle && self.lists[EVALUATE].count > 0 {
-                self.evaluate::<Q, P, S>(simd);
+                self.evaluate::<Q, P>();
             }
         }
     }
 
     /// The next ray that is fit for the wavefront takes a slot; others are answered at once. False without rays.
     #[inline(always)]
-    fn feed<Q: Query, P: PrecisionMode, S: Simd>(&mut self, simd: S, id: usize) -> bool {
+    fn feed<Q: Query, P: PrecisionMode>(&mut self, id: usize) -> bool {
         loop {
-            self.source.answer_packets::<Q, P, S>(simd, self.bvh, self.answer);
+            self.source.answer_packets::<Q, P>(self.bvh, self.answer);
             let Some((source, place)) = self.source.next() else { return false };
             let ray: Ray = source.into();
             if !self.source.are_coherent() && is_fit(&ray) {
                 self.start::<P>(id, &ray, place);
                 return true;
             }
-            (self.answer)(place, self.bvh.find::<Q, P, S>(simd, ray).0);
-            self.source.count_answered();
+            self.source.answer_alone::<Q, P>(self.bvh, ray, place, self.answer);
         }
     }
 
@@ -463,7 +462,7 @@ where
                     self.lists[EVALUATE].push(id);
                 } else {
                     self.finish::<Q, P>(id);
-                    self.feed::<Q, P, S>(simd, id);
+                    self.feed::<Q, P>(id);
                 }
             } else {
                 ray.child = next;
@@ -478,7 +477,7 @@ where
 
     /// The last rays on the list, as many as are evaluated at once.
     #[inline(always)]
-    fn evaluate<Q: Query, P: PrecisionMode, S: Simd>(&mut self, simd: S) {
+    fn evaluate<Q: Query, P: PrecisionMode>(&mut self) {
         let first = self.lists[EVALUATE].count.saturating_sub(HITS);
         let count = self.lists[EVALUATE].count - first;
         let list = self.lists[EVALUATE];
@@ -501,7 +500,7 @@ where
                 (best.t, best.u, best.v) = (hit.t, hit.u, hit.v);
             }
             self.finish::<Q, P>(id);
-            self.feed::<Q, P, S>(simd, id);
+            self.feed::<Q, P>(id);
         }
     }
 
