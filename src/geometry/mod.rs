@@ -29,5 +29,5 @@ pub use ray::{Hit, INVALID_ID, Ray};
 pub(crate) use sphere::{Sphere, SpherePart, SphereRay};
 pub(crate) use triangle::Triangle;
 pub(crate) use triangle_hit::{
-    Accurate, Exact, Fast, Interval, PrecisionMode, TriangleHit, TriangleRay, edge_slack, least_doubt,
+    Accurate, Exact, Fast, Interval, PrecisionMode, TriangleHit, TriangleRay, edge_slack, in_floats, least_doubt,
 };

@@ -20,7 +20,7 @@ use glam::{Vec4, Vec4Swizzles};
 use super::evaluation::Evaluation;
 use super::{BEHIND, Ray, Triangle};
 use crate::math::{DoubleDouble, UNIT_ROUNDOFF, rounds_alike, widen};
-use crate::simd::{Scalar, Simd};
+use crate::simd::{Floats, One, Scalar, Simd};
 
 /// What a triangle test found. `t` is finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +103,9 @@ pub(crate) trait PrecisionMode {
     ) -> Option<TriangleHit> {
         None
     }
+
+    /// Whether [`PrecisionMode::evaluate_certain`] is [`in_floats`].
+    const IS_IN_FLOATS: bool;
 
     /// For such a triangle what the answer is made of, where that does not need more.
     fn evaluate_certain<S: Simd>(simd: S, ray: &TriangleRay, corners: &Corners, t_min: f32) -> Option<Evaluation>;
@@ -273,7 +276,50 @@ impl TriangleRay {
     }
 }
 
+/// `[t, u, v]`; `t` from the triangle's plane or from the weights, whichever is off by less. In roundings, times the distance from the
+/// origin and over the weights' sum, the first is off by the length of the normal, the second by the range of depths
+/// times the size of the triangle as the ray sees it: where that is small beside the normal, weights are better.
+/// Weights alone make long triangles seen at an angle hit the rays that leave them.
+///
+/// `corners` as [`TriangleRay::corners`], `z` relative to the origin.
+#[inline(always)]
+pub(crate) fn in_floats<F: Floats>(
+    floats: F,
+    ray: &TriangleRay,
+    corners: &[[F::Vector; 3]; 3],
+    &[a, b, c]: &Weights<F::Vector>,
+    z: &[F::Vector; 3],
+) -> [F::Vector; 3] {
+    let (add, sub, mul) = (|a, b| floats.add(a, b), |a, b| floats.sub(a, b), |a, b| floats.mul(a, b));
+    let (min, max, abs) = (|a, b| floats.min(a, b), |a, b| floats.max(a, b), |a| floats.abs(a));
+    let per_sum = floats.div(floats.splat(1.0), add(add(a, b), c));
+    let (u, v) = (mul(b, per_sum), mul(c, per_sum));
+    let edges = |[a, b, c]: [F::Vector; 3]| (sub(b, a), sub(c, a));
+    let (x, y, depth) = (edges(corners[0]), edges(corners[1]), edges(corners[2]));
+    let across = |a, b, c, d| sub(mul(a, b), mul(c, d));
+    let normal = [across(y.0, depth.1, depth.0, y.1), across(depth.0, x.1, x.0, depth.1), across(x.0, y.1, y.0, x.1)];
+    let along = |p: [F::Vector; 3]| add(add(mul(normal[0], p[0]), mul(normal[1], p[1])), mul(normal[2], p[2]));
+    let [ox, oy, ..] = ray.origin.map(|origin| floats.splat(origin));
+    let distance = along([sub(corners[0][0], ox), sub(corners[1][0], oy), z[0]]);
+    let [dx, dy, dz, _] = ray.direction.map(|direction| floats.splat(direction));
+    // Measured: from 1 on CAD loses rays' origins, at 0 scans have twice the error.
+    const SHARE: f32 = 0.25;
+    let size = max(max(max(abs(x.0), abs(x.1)), abs(y.0)), abs(y.1));
+    let depth_range = max(abs(depth.0), abs(depth.1));
+    let length = add(add(abs(normal[0]), abs(normal[1])), abs(normal[2]));
+    let by_plane = floats.less(mul(floats.splat(SHARE), length), mul(depth_range, size));
+    let of_plane = mul(floats.div(distance, along([dx, dy, dz])), dz);
+    let of_weights = add(z[0], add(mul(u, depth.0), mul(v, depth.1)));
+    let between = floats.blend(of_weights, of_plane, by_plane);
+    // Rounding does not lead out of the triangle, or its box could be passed over. This makes a number of a NaN.
+    let (least, most) = (min(min(z[0], z[1]), z[2]), max(max(z[0], z[1]), z[2]));
+    // Adding 0 makes 0 of -0.
+    let t = add(floats.div(min(max(between, least), most), dz), floats.splat(0.0));
+    [t, u, v]
+}
+
 impl PrecisionMode for Fast {
+    const IS_IN_FLOATS: bool = true;
     const IS_EXACT: bool = false;
     const HAS_LANES: bool = false;
     const FOLLOWS_WEIGHTS: bool = false;
@@ -291,37 +337,14 @@ impl PrecisionMode for Fast {
         (!ray.ends_behind(&hit, &ray.corners(triangle))).then_some(hit)
     }
 
-    /// `t` from the triangle's plane or from the weights, whichever is off by less. In roundings, times the distance from the
-    /// origin and over the weights' sum, the first is off by the length of the normal, the second by the range of depths
-    /// times the size of the triangle as the ray sees it: where that is small beside the normal, weights are better.
-    /// Weights alone make long triangles seen at an angle hit the rays that leave them.
     #[inline(always)]
     fn evaluate_sheared(
         ray: &TriangleRay,
         corners: &Corners,
-        [a, b, c]: &Weights<f32>,
+        weights: &Weights<f32>,
         z: &[f32; 3],
     ) -> Option<TriangleHit> {
-        let per_sum = 1.0 / (a + b + c);
-        let (u, v) = (b * per_sum, c * per_sum);
-        let edges = |[a, b, c]: [f32; 3]| (b - a, c - a);
-        let (x, y, depth) = (edges(corners[0]), edges(corners[1]), edges(corners[2]));
-        let normal = [y.0 * depth.1 - depth.0 * y.1, depth.0 * x.1 - x.0 * depth.1, x.0 * y.1 - y.0 * x.1];
-        let along = |p: [f32; 3]| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
-        let distance = along([corners[0][0] - ray.origin[0], corners[1][0] - ray.origin[1], z[0]]);
-        let [dx, dy, dz, _] = ray.direction;
-        // Measured: from 1 on CAD loses rays' origins, at 0 scans have twice the error.
-        const SHARE: f32 = 0.25;
-        let size = x.0.abs().max(x.1.abs()).max(y.0.abs()).max(y.1.abs());
-        let depth_range = depth.0.abs().max(depth.1.abs());
-        let between = if depth_range * size > SHARE * (normal[0].abs() + normal[1].abs() + normal[2].abs()) {
-            distance / along([dx, dy, dz]) * dz
-        } else {
-            z[0] + (u * depth.0 + v * depth.1)
-        };
-        // Rounding does not lead out of the triangle, or its box could be passed over. This makes a number of a NaN.
-        let (least, most) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
-        let t = between.max(least).min(most) / dz;
+        let [t, u, v] = in_floats(One, ray, corners, weights, z);
         // Not where something was beyond the range of `f32`.
         (t.is_finite() & u.is_finite() & v.is_finite()).then_some(TriangleHit { t, u, v })
     }
@@ -335,6 +358,7 @@ impl PrecisionMode for Fast {
 }
 
 impl PrecisionMode for Accurate {
+    const IS_IN_FLOATS: bool = false;
     const IS_EXACT: bool = false;
     const HAS_LANES: bool = true;
     const FOLLOWS_WEIGHTS: bool = true;
@@ -376,6 +400,7 @@ impl PrecisionMode for Accurate {
 }
 
 impl PrecisionMode for Exact {
+    const IS_IN_FLOATS: bool = false;
     const IS_EXACT: bool = true;
     const HAS_LANES: bool = true;
     const FOLLOWS_WEIGHTS: bool = true;

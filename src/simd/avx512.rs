@@ -147,6 +147,12 @@ impl Floats for Wide {
         // SAFETY: as above.
         u32::from(unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b) })
     }
+
+    #[inline(always)]
+    fn blend(self, a: __m512, b: __m512, mask: u32) -> __m512 {
+        // SAFETY: as above.
+        unsafe { _mm512_mask_blend_ps(mask as u16, a, b) }
+    }
 }
 
 impl Sixteen for Wide {
@@ -160,12 +166,6 @@ impl Sixteen for Wide {
     fn store(self, a: __m512, values: &mut [f32; SIXTEEN]) {
         // SAFETY: as above, and there is room for sixteen floats.
         unsafe { _mm512_storeu_ps(values.as_mut_ptr(), a) };
-    }
-
-    #[inline(always)]
-    fn blend(self, a: __m512, b: __m512, mask: u32) -> __m512 {
-        // SAFETY: the token proves that the CPU has AVX-512 F.
-        unsafe { _mm512_mask_blend_ps(mask as u16, a, b) }
     }
 
     #[inline(always)]

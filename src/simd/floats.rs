@@ -1,4 +1,4 @@
-//! Floats at a time without saying how many: eight, or sixteen where many rays are tested against one triangle.
+//! Floats at a time without saying how many: one, eight, or sixteen where many rays are tested against one triangle.
 
 use super::{LANES, Simd};
 
@@ -21,15 +21,87 @@ pub(crate) trait Floats: Copy {
     fn abs(self, a: Self::Vector) -> Self::Vector;
     fn less(self, a: Self::Vector, b: Self::Vector) -> u32;
     fn less_or_equal(self, a: Self::Vector, b: Self::Vector) -> u32;
+    fn blend(self, a: Self::Vector, b: Self::Vector, mask: u32) -> Self::Vector;
 }
 
 /// Sixteen of them.
 pub(crate) trait Sixteen: Floats {
     fn load(self, values: &[f32; SIXTEEN]) -> Self::Vector;
     fn store(self, a: Self::Vector, values: &mut [f32; SIXTEEN]);
-    /// Of `b` the lanes whose bit is set in the mask, of `a` the others.
-    fn blend(self, a: Self::Vector, b: Self::Vector, mask: u32) -> Self::Vector;
     fn greatest(self, a: Self::Vector) -> f32;
+}
+
+/// One float.
+#[derive(Clone, Copy)]
+pub(crate) struct One;
+
+impl Floats for One {
+    type Vector = f32;
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> f32 {
+        value
+    }
+
+    #[inline(always)]
+    fn add(self, a: f32, b: f32) -> f32 {
+        a + b
+    }
+
+    #[inline(always)]
+    fn sub(self, a: f32, b: f32) -> f32 {
+        a - b
+    }
+
+    #[inline(always)]
+    fn mul(self, a: f32, b: f32) -> f32 {
+        a * b
+    }
+
+    #[inline(always)]
+    fn div(self, a: f32, b: f32) -> f32 {
+        a / b
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: f32, b: f32, c: f32) -> f32 {
+        a * b + c
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, a: f32, b: f32, c: f32) -> f32 {
+        a * b - c
+    }
+
+    #[inline(always)]
+    fn min(self, a: f32, b: f32) -> f32 {
+        if a < b { a } else { b }
+    }
+
+    #[inline(always)]
+    fn max(self, a: f32, b: f32) -> f32 {
+        if a > b { a } else { b }
+    }
+
+    #[inline(always)]
+    fn abs(self, a: f32) -> f32 {
+        a.abs()
+    }
+
+    #[inline(always)]
+    fn less(self, a: f32, b: f32) -> u32 {
+        u32::from(a < b)
+    }
+
+    #[inline(always)]
+    fn less_or_equal(self, a: f32, b: f32) -> u32 {
+        u32::from(a <= b)
+    }
+
+    #[inline(always)]
+    fn blend(self, a: f32, b: f32, mask: u32) -> f32 {
+        if mask & 1 == 1 { b } else { a }
+    }
 }
 
 /// The eight of an instruction set.
@@ -78,6 +150,11 @@ impl<S: Simd> Floats for Eight<S> {
     fn less_or_equal(self, a: S::F32x8, b: S::F32x8) -> u32 {
         self.0.less_or_equal(a, b)
     }
+
+    #[inline(always)]
+    fn blend(self, a: S::F32x8, b: S::F32x8, mask: u32) -> S::F32x8 {
+        self.0.blend(a, b, mask)
+    }
 }
 
 macro_rules! as_pair {
@@ -118,6 +195,11 @@ impl<S: Simd> Floats for Pair<S> {
     fn less_or_equal(self, a: [S::F32x8; 2], b: [S::F32x8; 2]) -> u32 {
         self.0.less_or_equal(a[0], b[0]) | self.0.less_or_equal(a[1], b[1]) << LANES
     }
+
+    #[inline(always)]
+    fn blend(self, a: [S::F32x8; 2], b: [S::F32x8; 2], mask: u32) -> [S::F32x8; 2] {
+        [self.0.blend(a[0], b[0], mask), self.0.blend(a[1], b[1], mask >> LANES)]
+    }
 }
 
 impl<S: Simd> Sixteen for Pair<S> {
@@ -132,11 +214,6 @@ impl<S: Simd> Sixteen for Pair<S> {
         let (halves, _) = values.as_chunks_mut::<LANES>();
         halves[0] = self.0.store(a);
         halves[1] = self.0.store(b);
-    }
-
-    #[inline(always)]
-    fn blend(self, a: [S::F32x8; 2], b: [S::F32x8; 2], mask: u32) -> [S::F32x8; 2] {
-        [self.0.blend(a[0], b[0], mask), self.0.blend(a[1], b[1], mask >> LANES)]
     }
 
     #[inline(always)]

@@ -173,7 +173,7 @@ mod tests;
 pub(crate) use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx512::Avx512;
-pub(crate) use floats::{Eight, Floats, SIXTEEN, Sixteen};
+pub(crate) use floats::{Eight, Floats, One, SIXTEEN, Sixteen};
 pub(crate) use isa::DetectedIsa;
 pub use isa::Isa;
 pub(crate) use scalar::Scalar;

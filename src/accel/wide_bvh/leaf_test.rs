@@ -11,9 +11,11 @@ use super::node::Child;
 use super::spans::{Corners, shear, size_across, weights};
 use crate::accel::Primitive;
 use crate::accel::leaf::{ClosestHit, Query};
-use crate::geometry::{Evaluation, Interval, PrecisionMode, Ray, TriangleHit, TriangleRay, edge_slack, least_doubt};
+use crate::geometry::{
+    BEHIND, Evaluation, Interval, PrecisionMode, Ray, TriangleHit, TriangleRay, edge_slack, in_floats, least_doubt,
+};
 use crate::math::UNIT_ROUNDOFF;
-use crate::simd::{Eight, Simd};
+use crate::simd::{Eight, LANES, Simd};
 
 /// A ray made ready for what leaves of a form hold.
 pub(crate) trait LeafTest<'a, F: LeafForm>: Sized {
@@ -127,6 +129,30 @@ impl Best {
     }
 }
 
+/// Hits of a leaf's triangles, evaluated together.
+struct Together {
+    /// Those that have one.
+    settled: u32,
+    /// Those of them that [end behind the origin](TriangleRay::ends_behind).
+    behind: u32,
+    t: [f32; LANES],
+    u: [f32; LANES],
+    v: [f32; LANES],
+}
+
+impl Together {
+    const NONE: Self = Self { settled: 0, behind: 0, t: [0.0; LANES], u: [0.0; LANES], v: [0.0; LANES] };
+
+    #[inline(always)]
+    fn evaluation(&self, lane: u32) -> Option<Evaluation> {
+        if self.behind >> lane & 1 != 0 {
+            return Some(Evaluation::Behind);
+        }
+        let lane = lane as usize % LANES;
+        Some(Evaluation::Inside(TriangleHit { t: self.t[lane], u: self.u[lane], v: self.v[lane] }))
+    }
+}
+
 impl<'a, F: TriangleForm> LeafTest<'a, F> for TriangleTest<'a, F> {
     #[inline(always)]
     fn new<P: PrecisionMode>(bvh: &'a WideBvh<F>, ray: &Ray) -> Self {
@@ -178,6 +204,11 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         best: &mut Best,
     ) -> bool {
         let mut left = candidates.lanes;
+        let in_floats = if P::IS_IN_FLOATS && !Q::FIRST_HIT_ENDS && left & candidates.sure != 0 {
+            self.evaluate_together(simd, child, left & candidates.sure)
+        } else {
+            Together::NONE
+        };
         while left != 0 {
             let lane = left.trailing_zeros();
             left &= left - 1;
@@ -186,7 +217,13 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
             let is_sure = candidates.sure >> lane & 1 != 0;
             // Each hit is kept where it is found: one place for all would have them come through memory, piece by piece, and be
             // loaded as a whole.
-            let ends = match if is_sure { self.evaluate::<P, S>(simd, place) } else { None } {
+            let ends = match if !is_sure {
+                None
+            } else if P::IS_IN_FLOATS && in_floats.settled >> lane & 1 != 0 {
+                in_floats.evaluation(lane)
+            } else {
+                self.evaluate::<P, S>(simd, place)
+            } {
                 Some(Evaluation::Inside(hit)) => interval.contains(hit.t) && self.keep::<Q, P>(hit, place, best),
                 Some(Evaluation::Behind) => false,
                 Some(Evaluation::Near { hit, t, t_error, .. }) => {
@@ -278,6 +315,46 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         P::evaluate_certain(simd, &self.ray, &corners, self.t_min)
     }
 
+    /// All triangles of a leaf; what ends behind the origin among the wanted ones alone.
+    #[inline(always)]
+    fn evaluate_together<S: Simd>(&self, simd: S, child: Child, wanted: u32) -> Together {
+        let leaf = self.bvh.leaves.leaf(child.triangles());
+        let rows = leaf.unpacked(simd);
+        let ray = &self.ray;
+        let eight = Eight(simd);
+        let load = |axis: usize| {
+            let [a, b, c] = rows.rows(ray.axes[axis]);
+            [simd.load(a), simd.load(b), simd.load(c)]
+        };
+        let corners = [load(0), load(1), load(2)];
+        let from_origin = |axis: usize| {
+            let ([a, b, c], origin) = (corners[axis], simd.splat(ray.origin[axis]));
+            [simd.sub(a, origin), simd.sub(b, origin), simd.sub(c, origin)]
+        };
+        let relative = [from_origin(0), from_origin(1), from_origin(2)];
+        let x = shear(eight, relative[0], simd.splat(ray.per_z[0]), relative[2]);
+        let y = shear(eight, relative[1], simd.splat(ray.per_z[1]), relative[2]);
+        let weights = weights(eight, &[x, y, relative[2]]);
+        let [t, u, v] = in_floats(eight, ray, &corners, &weights, &relative[2]);
+        let most = simd.splat(f32::MAX);
+        let finite = |a| simd.less_or_equal(simd.abs(a), most);
+        let mut behind = 0;
+        for (axis, &[a, b, c]) in relative.iter().enumerate() {
+            let (zero, direction) = (simd.splat(0.0), ray.direction[axis]);
+            let of_axis = if direction < 0.0 {
+                simd.less(zero, simd.min(a, simd.min(b, c)))
+            } else {
+                simd.less(simd.max(a, simd.max(b, c)), zero)
+            };
+            if of_axis & wanted != 0 {
+                behind |= of_axis & within_band(simd, [a, b, c], 1.0 / direction);
+            }
+        }
+        let settled = finite(t) & finite(u) & finite(v);
+        let behind = behind & simd.less_or_equal(simd.splat(0.0), t);
+        Together { settled, behind, t: simd.store(t), u: simd.store(u), v: simd.store(v) }
+    }
+
     #[inline(always)]
     fn leaf(&self, place: Place) -> F::Leaf<'_> {
         self.bvh.leaves.leaf(place.leaf.triangles())
@@ -299,6 +376,18 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
     fn hit<P: PrecisionMode>(&self, place: Place, interval: Interval) -> Option<TriangleHit> {
         self.ray.hit::<P>(&self.leaf(place).triangle(place.lane as usize), interval)
     }
+}
+
+/// Those of which a coordinate of all vertices, from the origin, is [close behind it](crate::geometry::BEHIND); none of a ray that
+/// does not leave along the axis.
+#[inline(always)]
+fn within_band<S: Simd>(simd: S, [a, b, c]: Corners<Eight<S>>, inverse: f32) -> u32 {
+    if !inverse.is_finite() {
+        return 0;
+    }
+    let inverse = simd.splat(inverse);
+    let (a, b, c) = (simd.mul(a, inverse), simd.mul(b, inverse), simd.mul(c, inverse));
+    simd.less(simd.max(a, simd.max(b, c)), simd.splat(BEHIND))
 }
 
 #[cold]
