@@ -29,7 +29,7 @@ const OF_TRIANGLES: [Expected; 4] = [
     Expected {
         token: "Avx2",
         vector_bytes: 32,
-        instructions: &[("fm|mulps", 21), ("maxps", 6), ("minps", 6), ("mulps", 15), ("movmskps", 2)],
+        instructions: &[("fm|mulps", 21), ("maxps", 6), ("minps", 6), ("mulps", 15), ("cmpps", 2)],
     },
     Expected {
         token: "Avx512",
@@ -46,7 +46,7 @@ const OF_SPHERES: [Expected; 4] = [
     Expected {
         token: "Avx2",
         vector_bytes: 32,
-        instructions: &[("fm|mulps", 21), ("maxps", 3), ("minps", 3), ("mulps", 15), ("movmskps", 2)],
+        instructions: &[("fm|mulps", 21), ("maxps", 3), ("minps", 3), ("mulps", 15), ("cmpps", 2)],
     },
     Expected {
         token: "Avx512",

@@ -56,7 +56,7 @@ impl Bounds8 {
     /// long to multiply one.
     #[inline(always)]
     pub(super) fn size(&self) -> Vec4 {
-        -(self.lower() + self.negated_upper()).with_w(0.0)
+        (-(self.lower() + self.negated_upper())).with_w(0.0)
     }
 
     /// The fourth is 0, as of [`Bounds8::size`].

@@ -290,32 +290,53 @@ pub(crate) fn in_floats<F: Floats>(
     &[a, b, c]: &Weights<F::Vector>,
     z: &[F::Vector; 3],
 ) -> [F::Vector; 3] {
-    let (add, sub, mul) = (|a, b| floats.add(a, b), |a, b| floats.sub(a, b), |a, b| floats.mul(a, b));
-    let (min, max, abs) = (|a, b| floats.min(a, b), |a, b| floats.max(a, b), |a| floats.abs(a));
-    let per_sum = floats.div(floats.splat(1.0), add(add(a, b), c));
-    let (u, v) = (mul(b, per_sum), mul(c, per_sum));
-    let edges = |[a, b, c]: [F::Vector; 3]| (sub(b, a), sub(c, a));
-    let (x, y, depth) = (edges(corners[0]), edges(corners[1]), edges(corners[2]));
-    let across = |a, b, c, d| sub(mul(a, b), mul(c, d));
-    let normal = [across(y.0, depth.1, depth.0, y.1), across(depth.0, x.1, x.0, depth.1), across(x.0, y.1, y.0, x.1)];
-    let along = |p: [F::Vector; 3]| add(add(mul(normal[0], p[0]), mul(normal[1], p[1])), mul(normal[2], p[2]));
-    let [ox, oy, ..] = ray.origin.map(|origin| floats.splat(origin));
-    let distance = along([sub(corners[0][0], ox), sub(corners[1][0], oy), z[0]]);
-    let [dx, dy, dz, _] = ray.direction.map(|direction| floats.splat(direction));
+    let per_sum = floats.div(floats.splat(1.0), floats.add(floats.add(a, b), c));
+    let (u, v) = (floats.mul(b, per_sum), floats.mul(c, per_sum));
+    let [x, y, depth] = [edges(floats, &corners[0]), edges(floats, &corners[1]), edges(floats, &corners[2])];
+    let normal = [across(floats, y, depth), across(floats, depth, x), across(floats, x, y)];
+    let [ox, oy, _, _] = ray.origin;
+    let (from_x, from_y) = (floats.sub(corners[0][0], floats.splat(ox)), floats.sub(corners[1][0], floats.splat(oy)));
+    let distance = along(floats, &normal, [from_x, from_y, z[0]]);
+    let [dx, dy, dz, _] = ray.direction;
+    let [dx, dy, dz] = [floats.splat(dx), floats.splat(dy), floats.splat(dz)];
     // Measured: from 1 on CAD loses rays' origins, at 0 scans have twice the error.
     const SHARE: f32 = 0.25;
-    let size = max(max(max(abs(x.0), abs(x.1)), abs(y.0)), abs(y.1));
-    let depth_range = max(abs(depth.0), abs(depth.1));
-    let length = add(add(abs(normal[0]), abs(normal[1])), abs(normal[2]));
-    let by_plane = floats.less(mul(floats.splat(SHARE), length), mul(depth_range, size));
-    let of_plane = mul(floats.div(distance, along([dx, dy, dz])), dz);
-    let of_weights = add(z[0], add(mul(u, depth.0), mul(v, depth.1)));
+    let (width, height) = (largest(floats, x), largest(floats, y));
+    let (size, depth_range) = (floats.max(width, height), largest(floats, depth));
+    let length = floats.add(floats.add(floats.abs(normal[0]), floats.abs(normal[1])), floats.abs(normal[2]));
+    let by_plane = floats.less(floats.mul(floats.splat(SHARE), length), floats.mul(depth_range, size));
+    let of_plane = floats.mul(floats.div(distance, along(floats, &normal, [dx, dy, dz])), dz);
+    let of_weights = floats.add(z[0], floats.add(floats.mul(u, depth[0]), floats.mul(v, depth[1])));
     let between = floats.blend(of_weights, of_plane, by_plane);
     // Rounding does not lead out of the triangle, or its box could be passed over. This makes a number of a NaN.
-    let (least, most) = (min(min(z[0], z[1]), z[2]), max(max(z[0], z[1]), z[2]));
+    let least = floats.min(floats.min(z[0], z[1]), z[2]);
+    let most = floats.max(floats.max(z[0], z[1]), z[2]);
+    let between = floats.min(floats.max(between, least), most);
     // Adding 0 makes 0 of -0.
-    let t = add(floats.div(min(max(between, least), most), dz), floats.splat(0.0));
+    let t = floats.add(floats.div(between, dz), floats.splat(0.0));
     [t, u, v]
+}
+
+/// One coordinate of the edges from the first vertex to the others.
+#[inline(always)]
+fn edges<F: Floats>(floats: F, &[a, b, c]: &[F::Vector; 3]) -> [F::Vector; 2] {
+    [floats.sub(b, a), floats.sub(c, a)]
+}
+
+/// A component of the cross product of two edges.
+#[inline(always)]
+fn across<F: Floats>(floats: F, [a, d]: [F::Vector; 2], [c, b]: [F::Vector; 2]) -> F::Vector {
+    floats.sub(floats.mul(a, b), floats.mul(c, d))
+}
+
+#[inline(always)]
+fn along<F: Floats>(floats: F, normal: &[F::Vector; 3], [x, y, z]: [F::Vector; 3]) -> F::Vector {
+    floats.add(floats.add(floats.mul(normal[0], x), floats.mul(normal[1], y)), floats.mul(normal[2], z))
+}
+
+#[inline(always)]
+fn largest<F: Floats>(floats: F, [a, b]: [F::Vector; 2]) -> F::Vector {
+    floats.max(floats.abs(a), floats.abs(b))
 }
 
 impl PrecisionMode for Fast {

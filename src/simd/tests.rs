@@ -41,6 +41,14 @@ fn results<S: Simd>(simd: S) -> Vec<u32> {
                     let transposed = simd.transpose(fours.each_ref()).map(|row| simd.store(row));
                     results.extend(transposed.as_flattened().iter().map(|value| value.to_bits()));
                     let (a, b) = (simd.load(&a), simd.load(&b));
+                    let eights: [S::F32x8; LANES] = std::array::from_fn(|row| simd.add(a, simd.splat(row as f32)));
+                    let columns = simd.transpose_eights(eights).map(|column| simd.store(column));
+                    for (column, values) in columns.iter().enumerate() {
+                        for (row, value) in values.iter().enumerate() {
+                            let of_row = simd.store(eights[row])[column];
+                            assert!(value.to_bits() == of_row.to_bits() || value.is_nan() && of_row.is_nan());
+                        }
+                    }
                     let lanes = [
                         simd.add(a, b),
                         simd.sub(a, b),
@@ -87,7 +95,8 @@ fn arrangements<S: Simd>(simd: S) -> Vec<u32> {
                 results.extend(simd.store(lanes)[..count].iter().map(|key| key.to_bits()));
                 results.extend(&values[..count]);
                 let (and, or) = (simd.and(keys, simd.splat(-1.5)), simd.or(keys, simd.splat(-0.0)));
-                results.extend([and, or].into_iter().flat_map(|lanes| simd.store(lanes)).map(f32::to_bits));
+                let blended = simd.blend(keys, simd.splat(0.5), mask as u32);
+                results.extend([and, or, blended].into_iter().flat_map(|lanes| simd.store(lanes)).map(f32::to_bits));
             }
             results
         }
@@ -129,6 +138,74 @@ fn doubles<S: Simd>(simd: S) -> Vec<u64> {
     simd.vectorize(All)
 }
 
+/// The results of all operations on sixteen floats: the bits, a NaN as one number.
+fn sixteens<S: Simd>(simd: S) -> Vec<u32> {
+    struct All;
+    impl SimdKernel for All {
+        type Output = Vec<u32>;
+
+        fn run<S: Simd>(self, simd: S) -> Vec<u32> {
+            let floats = simd.sixteen();
+            let mut results = Vec::new();
+            for shift in 0..SIXTEEN {
+                let b = std::array::from_fn(|lane| VALUES[(lane + shift) % SIXTEEN]);
+                results.extend(of_all(floats, floats.load(&VALUES), floats.load(&b), |a| {
+                    let mut values = [0.0; SIXTEEN];
+                    floats.store(a, &mut values);
+                    values
+                }));
+            }
+            // NaN is the greatest of nothing.
+            let numbers = VALUES.map(|value| if value.is_nan() { -3.0 } else { value });
+            results.push(floats.greatest(floats.load(&numbers)).to_bits());
+            results
+        }
+    }
+    simd.vectorize(All)
+}
+
+fn of_all<F: Floats>(floats: F, a: F::Vector, b: F::Vector, store: impl Fn(F::Vector) -> [f32; SIXTEEN]) -> Vec<u32> {
+    let values = [
+        floats.add(a, b),
+        floats.sub(a, b),
+        floats.mul(a, b),
+        floats.div(a, b),
+        floats.min(a, b),
+        floats.max(a, b),
+        floats.abs(b),
+        floats.blend(a, b, 0b1010_0110_1111_0001),
+        floats.mul_add(floats.splat(1.0), a, floats.splat(0.0)),
+        floats.mul_sub(floats.splat(1.0), a, floats.splat(0.0)),
+    ];
+    let bits = |value: f32| if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() };
+    let mut results: Vec<u32> = values.into_iter().flat_map(store).map(bits).collect();
+    results.extend([floats.less(a, b), floats.less_or_equal(a, b)]);
+    results
+}
+
+#[test]
+fn sixteen_floats_are_each_computed_as_one() {
+    for shift in 0..SIXTEEN {
+        let b: [f32; SIXTEEN] = std::array::from_fn(|lane| VALUES[(lane + shift) % SIXTEEN]);
+        let floats = Scalar.sixteen();
+        let store = |a| {
+            let mut values = [0.0; SIXTEEN];
+            floats.store(a, &mut values);
+            values
+        };
+        let together = of_all(floats, floats.load(&VALUES), floats.load(&b), store);
+        for lane in 0..SIXTEEN {
+            let alone = of_all(One, VALUES[lane], b[lane], |a| [a; SIXTEEN]);
+            for operation in (0..10).filter(|operation| *operation != 7) {
+                assert_eq!(together[operation * SIXTEEN + lane], alone[operation * SIXTEEN], "{operation} of {lane}");
+            }
+            for comparison in [160, 161] {
+                assert_eq!(together[comparison] >> lane & 1, alone[comparison] & 1, "{comparison} of {lane}");
+            }
+        }
+    }
+}
+
 #[test]
 fn doubles_are_beyond_a_bound_on_one_side_together() {
     let beyond = |values: [f32; 3], bound| Scalar.beyond3(Scalar.widen3(values), bound);
@@ -164,17 +241,21 @@ fn every_instruction_set_computes_what_the_scalar_one_does() {
             assert_eq!(results(simd), results(Scalar), "SSE4.2");
             assert_eq!(doubles(simd), doubles(Scalar), "SSE4.2");
             assert_eq!(arrangements(simd), arrangements(Scalar), "SSE4.2");
+            assert_eq!(sixteens(simd), sixteens(Scalar), "SSE4.2");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
         if let Some(simd) = Avx2::detect() {
             assert_eq!(results(simd), results(Scalar), "AVX2");
             assert_eq!(doubles(simd), doubles(Scalar), "AVX2");
             assert_eq!(arrangements(simd), arrangements(Scalar), "AVX2");
+            assert_eq!(sixteens(simd), sixteens(Scalar), "AVX2");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
         if let Some(simd) = Avx512::detect() {
             assert_eq!(results(simd), results(Scalar), "AVX-512");
             assert_eq!(doubles(simd), doubles(Scalar), "AVX-512");
+            assert_eq!(arrangements(simd), arrangements(Scalar), "AVX-512");
+            assert_eq!(sixteens(simd), sixteens(Scalar), "AVX-512");
             assert_eq!(exact_mul_sub(simd), MUL_SUB);
         }
     }

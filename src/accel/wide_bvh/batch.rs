@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use std::time::Instant;
 
 use super::WideBvh;
-use super::coherent::{Coherent, PACKET};
+use super::coherent::{Coherent, LEAST_PACKET, PACKET};
 use super::packet::Packet;
 use super::wavefront::{self, Flight};
 use crate::accel::leaf::{ClosestHit, Query};
@@ -209,6 +209,11 @@ where
     #[inline(always)]
     fn take_packet(&mut self, simd: impl Simd, bounds: &Aabb, coherent: &mut Coherent) -> bool {
         if self.refused != 0 || !self.has_rays() {
+            return false;
+        }
+        if self.rays.len() < LEAST_PACKET {
+            // The end of a run tells nothing of the next one.
+            (self.refused, self.are_coherent) = (self.rays.len(), false);
             return false;
         }
         self.others.pause();

@@ -34,7 +34,7 @@ const MOST_SPREAD: f32 = 0.25;
 const MOST_DISTANCE: f32 = 1.0 / 64.0;
 
 /// The fewest rays that are worth a packet's work.
-const LEAST_RAYS: usize = 4;
+pub(super) const LEAST_PACKET: usize = 4;
 
 /// A packet's rays, and what they lie between.
 pub(super) struct Coherent {
@@ -73,15 +73,15 @@ impl Coherent {
     where
         for<'r> &'r R: Into<Ray>,
     {
-        let (Some(first), Some(last)) = (rays.first(), rays.get(LEAST_RAYS - 1)) else { return false };
+        let (Some(first), Some(near)) = (rays.first(), rays.get(LEAST_PACKET - 1)) else { return false };
         let first: Ray = first.into();
         let direction = Vec3A::from(first.direction);
         let signs = direction.is_negative_bitmask();
         let most_across = MOST_SPREAD * direction.abs().max_element();
         // These two settle most refusals.
-        let last = Vec3A::from(Into::<Ray>::into(last).direction);
-        if last.is_negative_bitmask() != signs
-            || (last - direction).abs().max_element() > most_across
+        let near = Vec3A::from(Into::<Ray>::into(near).direction);
+        if near.is_negative_bitmask() != signs
+            || (near - direction).abs().max_element() > most_across
             || !is_fit(&first)
         {
             return false;
@@ -95,7 +95,7 @@ impl Coherent {
         self.set_rows(simd, &loaded);
         let alike = self.alike(simd.sixteen()).trailing_ones() as usize;
         if alike < self.count {
-            if alike < LEAST_RAYS {
+            if alike < LEAST_PACKET {
                 return false;
             }
             self.count = alike;

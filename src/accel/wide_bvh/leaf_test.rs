@@ -144,12 +144,12 @@ impl Together {
     const NONE: Self = Self { settled: 0, behind: 0, t: [0.0; LANES], u: [0.0; LANES], v: [0.0; LANES] };
 
     #[inline(always)]
-    fn evaluation(&self, lane: u32) -> Option<Evaluation> {
+    fn evaluation(&self, lane: u32) -> Evaluation {
         if self.behind >> lane & 1 != 0 {
-            return Some(Evaluation::Behind);
+            return Evaluation::Behind;
         }
         let lane = lane as usize % LANES;
-        Some(Evaluation::Inside(TriangleHit { t: self.t[lane], u: self.u[lane], v: self.v[lane] }))
+        Evaluation::Inside(TriangleHit { t: self.t[lane], u: self.u[lane], v: self.v[lane] })
     }
 }
 
@@ -220,7 +220,7 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
             let ends = match if !is_sure {
                 None
             } else if P::IS_IN_FLOATS && in_floats.settled >> lane & 1 != 0 {
-                in_floats.evaluation(lane)
+                Some(in_floats.evaluation(lane))
             } else {
                 self.evaluate::<P, S>(simd, place)
             } {
@@ -315,31 +315,24 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
         P::evaluate_certain(simd, &self.ray, &corners, self.t_min)
     }
 
-    /// All triangles of a leaf; what ends behind the origin among the wanted ones alone.
+    /// All triangles of a leaf; whether those that are not wanted end behind the origin is left open.
     #[inline(always)]
     fn evaluate_together<S: Simd>(&self, simd: S, child: Child, wanted: u32) -> Together {
         let leaf = self.bvh.leaves.leaf(child.triangles());
         let rows = leaf.unpacked(simd);
         let ray = &self.ray;
         let eight = Eight(simd);
-        let load = |axis: usize| {
-            let [a, b, c] = rows.rows(ray.axes[axis]);
-            [simd.load(a), simd.load(b), simd.load(c)]
-        };
-        let corners = [load(0), load(1), load(2)];
-        let from_origin = |axis: usize| {
-            let ([a, b, c], origin) = (corners[axis], simd.splat(ray.origin[axis]));
-            [simd.sub(a, origin), simd.sub(b, origin), simd.sub(c, origin)]
-        };
-        let relative = [from_origin(0), from_origin(1), from_origin(2)];
-        let x = shear(eight, relative[0], simd.splat(ray.per_z[0]), relative[2]);
-        let y = shear(eight, relative[1], simd.splat(ray.per_z[1]), relative[2]);
-        let weights = weights(eight, &[x, y, relative[2]]);
-        let [t, u, v] = in_floats(eight, ray, &corners, &weights, &relative[2]);
-        let most = simd.splat(f32::MAX);
-        let finite = |a| simd.less_or_equal(simd.abs(a), most);
+        let [kx, ky, kz] = ray.axes;
+        let corners = [load(simd, &rows, kx), load(simd, &rows, ky), load(simd, &rows, kz)];
+        let z = from_origin(simd, &rows, kz, simd.splat(ray.origin[2]));
+        let from_x = from_origin(simd, &rows, kx, simd.splat(ray.origin[0]));
+        let from_y = from_origin(simd, &rows, ky, simd.splat(ray.origin[1]));
+        let x = shear(eight, from_x, simd.splat(ray.per_z[0]), z);
+        let y = shear(eight, from_y, simd.splat(ray.per_z[1]), z);
+        let weights = weights(eight, &[x, y, z]);
+        let [t, u, v] = in_floats(eight, ray, &corners, &weights, &z);
         let mut behind = 0;
-        for (axis, &[a, b, c]) in relative.iter().enumerate() {
+        for (axis, [a, b, c]) in [from_x, from_y, z].into_iter().enumerate() {
             let (zero, direction) = (simd.splat(0.0), ray.direction[axis]);
             let of_axis = if direction < 0.0 {
                 simd.less(zero, simd.min(a, simd.min(b, c)))
@@ -350,7 +343,10 @@ impl<F: TriangleForm> TriangleTest<'_, F> {
                 behind |= of_axis & within_band(simd, [a, b, c], 1.0 / direction);
             }
         }
-        let settled = finite(t) & finite(u) & finite(v);
+        let most = simd.splat(f32::MAX);
+        let settled = simd.less_or_equal(simd.abs(t), most)
+            & simd.less_or_equal(simd.abs(u), most)
+            & simd.less_or_equal(simd.abs(v), most);
         let behind = behind & simd.less_or_equal(simd.splat(0.0), t);
         Together { settled, behind, t: simd.store(t), u: simd.store(u), v: simd.store(v) }
     }
@@ -410,7 +406,13 @@ fn reach_from([lower, upper]: &[Vec4; 2], ray: &Ray) -> f32 {
 }
 
 #[inline(always)]
-fn from_origin<S: Simd>(simd: S, leaf: &impl LeafRows, axis: usize, origin: S::F32x8) -> Corners<Eight<S>> {
+fn load<S: Simd>(simd: S, leaf: &impl LeafRows, axis: usize) -> Corners<Eight<S>> {
     let [a, b, c] = leaf.rows(axis);
-    [simd.sub(simd.load(a), origin), simd.sub(simd.load(b), origin), simd.sub(simd.load(c), origin)]
+    [simd.load(a), simd.load(b), simd.load(c)]
+}
+
+#[inline(always)]
+fn from_origin<S: Simd>(simd: S, leaf: &impl LeafRows, axis: usize, origin: S::F32x8) -> Corners<Eight<S>> {
+    let [a, b, c] = load(simd, leaf, axis);
+    [simd.sub(a, origin), simd.sub(b, origin), simd.sub(c, origin)]
 }

@@ -63,7 +63,7 @@ struct Rays<'p> {
     /// The best hit's `t` lies between the two. Without a hit both are `t_max`; `-inf` where nothing is left to find.
     nearest: Row,
     farthest: Row,
-    /// Whose best hit is not evaluated yet, with leaf and lane of each as bits.
+    /// Whose best hit is not evaluated yet, with leaf and lane of each as bits, which no arithmetic touches.
     pending: u32,
     leaf: Row,
     lane: Row,
@@ -124,7 +124,7 @@ where
                 }
             };
         }
-        if !Q::FIRST_HIT_ENDS && P::HAS_LANES {
+        if !Q::FIRST_HIT_ENDS && P::HAS_LANES && rays.pending != 0 {
             rays.settle_together::<P>(bvh);
         }
         for (index, (place, source)) in places.iter_mut().zip(sources).enumerate().take(PACKET) {
@@ -238,7 +238,7 @@ impl<'p> Rays<'p> {
         )
     }
 
-    /// The leaf's triangles, one after the other, against the active rays. True if any ray's best hit changed.
+    /// The leaf's triangles, one after the other, against the active rays. True if any ray's best hit may have changed.
     #[inline(always)]
     fn test_leaf<Q: Query, P: PrecisionMode, R, F: Sixteen>(
         &mut self,
@@ -354,7 +354,6 @@ impl<'p> Rays<'p> {
                 if self.pending >> index & 1 == 1 {
                     let triangle = self.pending_triangle(index, bvh);
                     lanes.set_triangle(of_group, axes, &triangle);
-                    self.best[index].primitive = triangle;
                 }
             }
         }
@@ -366,8 +365,8 @@ impl<'p> Rays<'p> {
                     && let Some(hit) = settled(&hits, of_group)
                 {
                     self.pending &= !(1 << index);
-                    let best = &mut self.best[index];
-                    (best.t, best.u, best.v) = (hit.t, hit.u, hit.v);
+                    let primitive = self.pending_triangle(index, bvh);
+                    self.best[index] = ClosestHit { t: hit.t, u: hit.u, v: hit.v, primitive };
                 }
             }
         }

@@ -488,16 +488,16 @@ where
             if let Some((of_leaf, child)) = self.leaves[id].pending {
                 let triangle = self.bvh.leaves.leaf(child.triangles()).triangle(of_leaf as usize % LANES);
                 lanes.set(lane, &self.slots[id].ray, &triangle);
-                self.slots[id].best.primitive = triangle;
             }
         }
         let hits = lanes.evaluate::<P>();
         for lane in 0..count {
             let id = list.id(first + lane);
-            if let Some(hit) = settled(&hits, lane) {
-                self.leaves[id].pending = None;
-                let best = &mut self.slots[id].best;
-                (best.t, best.u, best.v) = (hit.t, hit.u, hit.v);
+            if let Some(hit) = settled(&hits, lane)
+                && let Some((of_leaf, child)) = self.leaves[id].pending.take()
+            {
+                let primitive = self.bvh.leaves.leaf(child.triangles()).triangle(of_leaf as usize % LANES);
+                self.slots[id].best = ClosestHit { t: hit.t, u: hit.u, v: hit.v, primitive };
             }
             self.finish::<Q, P>(id);
             self.feed::<Q, P>(id);
