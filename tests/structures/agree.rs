@@ -87,7 +87,7 @@ fn batch_occluded(scene: &Scene, rays: &[Ray], thread_count: u32) -> Vec<bool> {
     occluded.into_iter().map(|is_hit| unsafe { is_hit.assume_init() }).collect()
 }
 
-/// What a batch takes apart: rays at random, rays of a camera in rows, which go together, and among both now and then
+/// What a batch takes apart: rays at random, rays of two cameras in rows, which go together, and among all now and then
 /// an invalid ray, one along an axis, and one whose interval ends before or at its hit.
 fn mixed_rays(mesh: &Mesh, scene: &Scene, rng: &mut Rng) -> Vec<Ray> {
     let mut rays = rays_for(mesh, rng);
@@ -102,6 +102,15 @@ fn mixed_rays(mesh: &Mesh, scene: &Scene, rng: &mut Rng) -> Vec<Ray> {
             let aside = (column as f32 / 100.0 - 1.0) * 0.3;
             let direction = forward.normalize() + right.normalize() * aside + up.normalize() * height;
             rays.push(Ray { origin: eye, t_min: 0.0, direction, t_max: f32::INFINITY });
+        }
+    }
+    // Along an axis, so that signs change within rows; with intervals that end anywhere.
+    let before = centre + Vec3::Z * (3.0 * half.max_element());
+    for row in 0..4 {
+        for column in 0..200 {
+            let direction = Vec3::new((column as f32 - 99.5) / 250.0, (row as f32 - 1.5) / 10.0, -1.0);
+            let t_max = [f32::INFINITY, 3.0 * half.max_element(), f32::MAX, 0.0, f32::INFINITY, -0.0][column % 6];
+            rays.push(Ray { origin: before, t_min: -0.0, direction, t_max });
         }
     }
     let nan = f32::NAN;
@@ -122,7 +131,7 @@ fn mixed_rays(mesh: &Mesh, scene: &Scene, rng: &mut Rng) -> Vec<Ray> {
 
 #[test]
 fn batches_of_every_length_give_the_hits_of_single_calls() {
-    const LENGTHS: [usize; 12] = [0, 1, 2, 31, 32, 33, 63, 64, 65, 127, 255, 1000];
+    const LENGTHS: [usize; 14] = [0, 1, 2, 31, 32, 33, 63, 64, 65, 67, 75, 127, 255, 1000];
 
     for mesh in meshes() {
         for precision in [Precision::Fast, Precision::Accurate, Precision::Exact] {
