@@ -21,7 +21,8 @@ pub(super) fn new_pool(thread_count: u32) -> Result<ThreadPool, BuildError> {
         .map_err(|error| BuildError::Threads(error.to_string()))
 }
 
-/// Runs a worker on at most `thread_count` threads at a time, 0 for all; on the calling one alone for 1.
+/// Runs a worker on at most `thread_count` threads at a time, 0 for all; the calling one is always among them, so that not all have
+/// to wake up.
 pub(crate) fn run_workers(thread_count: u32, worker: impl Fn() + Sync) {
     let pool = if thread_count == 1 { None } else { shared_pool() };
     let Some(pool) = pool else { return worker() };
@@ -29,9 +30,10 @@ pub(crate) fn run_workers(thread_count: u32, worker: impl Fn() + Sync) {
         0 => pool.current_num_threads(),
         count => pool.current_num_threads().min(count as usize),
     };
-    pool.scope(|scope| {
-        for _ in 0..worker_count {
+    pool.in_place_scope(|scope| {
+        for _ in 1..worker_count {
             scope.spawn(|_| worker());
         }
+        worker();
     });
 }
