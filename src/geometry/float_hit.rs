@@ -8,22 +8,21 @@ use crate::simd::Floats;
 /// times the size of the triangle as the ray sees it: where that is small beside the normal, weights are better.
 /// Weights alone make long triangles seen at an angle hit the rays that leave them.
 ///
-/// `corners` in the order of the ray's axes, `weights` and `z` of the sheared triangle, as in `triangle_hit.rs`.
+/// In the order of the ray's axes: the [edges] of the triangle, and the first vertex from the origin; `weights` and `z` of the sheared
+/// triangle, as in `triangle_hit.rs`.
 #[inline(always)]
 pub(crate) fn in_floats<F: Floats>(
     floats: F,
     ray: &TriangleRay,
-    corners: &[[F::Vector; 3]; 3],
+    [x, y, depth]: [[F::Vector; 2]; 3],
+    first: [F::Vector; 3],
     &[a, b, c]: &[F::Vector; 3],
     z: &[F::Vector; 3],
 ) -> [F::Vector; 3] {
     let per_sum = floats.div(floats.splat(1.0), floats.add(floats.add(a, b), c));
     let (u, v) = (floats.mul(b, per_sum), floats.mul(c, per_sum));
-    let [x, y, depth] = [edges(floats, &corners[0]), edges(floats, &corners[1]), edges(floats, &corners[2])];
     let normal = [across(floats, y, depth), across(floats, depth, x), across(floats, x, y)];
-    let [ox, oy, _, _] = ray.origin;
-    let (from_x, from_y) = (floats.sub(corners[0][0], floats.splat(ox)), floats.sub(corners[1][0], floats.splat(oy)));
-    let distance = along(floats, &normal, [from_x, from_y, z[0]]);
+    let distance = along(floats, &normal, first);
     let [dx, dy, dz, _] = ray.direction;
     let [dx, dy, dz] = [floats.splat(dx), floats.splat(dy), floats.splat(dz)];
     // Measured: from 1 on CAD loses rays' origins, at 0 scans have twice the error.
@@ -46,7 +45,7 @@ pub(crate) fn in_floats<F: Floats>(
 
 /// One coordinate of the edges from the first vertex to the others.
 #[inline(always)]
-fn edges<F: Floats>(floats: F, &[a, b, c]: &[F::Vector; 3]) -> [F::Vector; 2] {
+pub(crate) fn edges<F: Floats>(floats: F, &[a, b, c]: &[F::Vector; 3]) -> [F::Vector; 2] {
     [floats.sub(b, a), floats.sub(c, a)]
 }
 

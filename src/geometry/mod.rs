@@ -24,7 +24,7 @@ pub(crate) use clip::Polygon;
 pub(crate) use crossing::Crossing;
 pub(crate) use evaluation::Evaluation;
 pub(crate) use evaluation_lanes::{HITS, HitLanes, settled};
-pub(crate) use float_hit::in_floats;
+pub(crate) use float_hit::{edges, in_floats};
 pub(crate) use hit_point::HitPoint;
 pub use mesh_view::{IndexBytes, IndexView, PositionView, SphereView, TriangleView, span_bytes};
 pub use ray::{Hit, INVALID_ID, Ray};

@@ -18,7 +18,7 @@ use std::ops::{Mul, Neg, Sub};
 use glam::{Vec4, Vec4Swizzles};
 
 use super::evaluation::Evaluation;
-use super::float_hit::in_floats;
+use super::float_hit::{edges, in_floats};
 use super::{BEHIND, Ray, Triangle};
 use crate::math::{DoubleDouble, UNIT_ROUNDOFF, rounds_alike, widen};
 use crate::simd::{One, Scalar, Simd};
@@ -303,7 +303,9 @@ impl PrecisionMode for Fast {
         weights: &Weights<f32>,
         z: &[f32; 3],
     ) -> Option<TriangleHit> {
-        let [t, u, v] = in_floats(One, ray, corners, weights, z);
+        let edges = [edges(One, &corners[0]), edges(One, &corners[1]), edges(One, &corners[2])];
+        let first = [corners[0][0] - ray.origin[0], corners[1][0] - ray.origin[1], z[0]];
+        let [t, u, v] = in_floats(One, ray, edges, first, weights, z);
         // Not where something was beyond the range of `f32`.
         (t.is_finite() & u.is_finite() & v.is_finite()).then_some(TriangleHit { t, u, v })
     }
