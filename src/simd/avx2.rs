@@ -24,8 +24,6 @@ impl Avx2 {
 impl Simd for Avx2 {
     type F32x8 = __m256;
     type F64x3 = __m256d;
-    type Sixteen = Pair<Self>;
-    type ForSteps = Self;
 
     frames!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 
@@ -308,13 +306,5 @@ impl Simd for Avx2 {
         }
     }
 
-    #[inline(always)]
-    fn sixteen(self) -> Pair<Self> {
-        Pair(self)
-    }
-
-    #[inline(always)]
-    fn for_steps(self) -> Self {
-        self
-    }
+    pairs!();
 }

@@ -100,7 +100,25 @@ macro_rules! plain_doubles {
     };
 }
 
-/// Orders of lanes on plain arrays.
+/// Sixteen floats as two times eight, and steps on the instruction set itself.
+macro_rules! pairs {
+    () => {
+        type Sixteen = Pair<Self>;
+        type ForSteps = Self;
+
+        #[inline(always)]
+        fn sixteen(self) -> Pair<Self> {
+            Pair(self)
+        }
+
+        #[inline(always)]
+        fn for_steps(self) -> Self {
+            self
+        }
+    };
+}
+
+/// Orders of lanes on plain arrays. No defaults of the trait's: an instruction set that has better ones could forget them.
 macro_rules! plain_orders {
     () => {
         #[inline(always)]

@@ -26,8 +26,6 @@ fn mask(a: [f32; LANES], b: [f32; LANES], holds: impl Fn(f32, f32) -> bool) -> u
 impl Simd for Scalar {
     type F32x8 = [f32; LANES];
     type F64x3 = [f64; 3];
-    type Sixteen = Pair<Self>;
-    type ForSteps = Self;
 
     #[inline(always)]
     fn vectorize<K: SimdKernel>(self, kernel: K) -> K::Output {
@@ -57,15 +55,7 @@ impl Simd for Scalar {
 
     plain_orders!();
 
-    #[inline(always)]
-    fn sixteen(self) -> Pair<Self> {
-        Pair(self)
-    }
-
-    #[inline(always)]
-    fn for_steps(self) -> Self {
-        self
-    }
+    pairs!();
 
     #[inline(always)]
     fn splat(self, value: f32) -> [f32; LANES] {

@@ -30,8 +30,6 @@ fn mask(bits: [__m128; 2]) -> u32 {
 impl Simd for Sse42 {
     type F32x8 = [__m128; 2];
     type F64x3 = [f64; 3];
-    type Sixteen = Pair<Self>;
-    type ForSteps = Self;
 
     frames!(Sse42, "sse4.2");
 
@@ -39,15 +37,7 @@ impl Simd for Sse42 {
 
     plain_orders!();
 
-    #[inline(always)]
-    fn sixteen(self) -> Pair<Self> {
-        Pair(self)
-    }
-
-    #[inline(always)]
-    fn for_steps(self) -> Self {
-        self
-    }
+    pairs!();
 
     #[inline(always)]
     fn splat(self, value: f32) -> [__m128; 2] {
